@@ -1,0 +1,42 @@
+# What every target of the project shares: the language level, warnings as errors in developer builds, reproducible
+# floating point, sanitizers, and the one way to declare a library with its alias.
+
+find_package(Threads REQUIRED)
+
+add_library(tet4d_options INTERFACE)
+target_compile_features(tet4d_options INTERFACE cxx_std_20)
+# The same bytes on every machine: no fused multiply-add unless the source asks for it.
+target_compile_options(tet4d_options INTERFACE -ffp-contract=off)
+if(TET4D_SANITIZE)
+  target_compile_options(tet4d_options INTERFACE -fsanitize=${TET4D_SANITIZE} -fno-omit-frame-pointer
+                                                 -fno-sanitize-recover=all)
+  target_link_options(tet4d_options INTERFACE -fsanitize=${TET4D_SANITIZE})
+endif()
+
+add_library(tet4d_warnings INTERFACE)
+if(PROJECT_IS_TOP_LEVEL)
+  target_compile_options(tet4d_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor
+                                                  -Woverloaded-virtual -Wcast-align -Wold-style-cast -Werror)
+endif()
+
+# tet4d_add_library(<name> SOURCES <files...> [DEPENDS <targets...>] [PRIVATE_DEPENDS <targets...>])
+# A static library tet4d_<name> with the alias tet4d::<name>, headers found from the project's root.
+function(tet4d_add_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  add_library(tet4d_${name} STATIC ${ARG_SOURCES})
+  add_library(tet4d::${name} ALIAS tet4d_${name})
+  set_target_properties(tet4d_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(tet4d_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tet4d>)
+  target_link_libraries(tet4d_${name} PUBLIC tet4d_options ${ARG_DEPENDS}
+                                      PRIVATE $<BUILD_INTERFACE:tet4d_warnings> ${ARG_PRIVATE_DEPENDS})
+  set_property(GLOBAL APPEND PROPERTY TET4D_LIBRARIES tet4d_${name})
+endfunction()
+
+# tet4d_add_program(<name> SOURCES <files...> DEPENDS <targets...>)
+function(tet4d_add_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE tet4d_options tet4d_warnings ${ARG_DEPENDS})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()

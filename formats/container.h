@@ -1,0 +1,163 @@
+// The container of every mappable tet4d file: a 64-byte header, sections, a table of sections.
+//
+//   header (64 B) | sections, each 64-byte aligned (page sections 4096), zero padding between | section table (64 B each)
+//
+// All numbers are little-endian. docs/formats/container.md suffices to write a reader; scripts/readers proves it.
+//
+// Reader: maps the file and proves structure — sizes, ranges, overlaps, counts, alignment, zero reserved fields, table and
+// header checksums — before it hands out a span. Sections of an unknown optional kind are skipped; an unknown required
+// kind is a refusal. Section and page contents are proved by verifySection() and paged::Pages::load().
+// Writer: streams to a temporary name beside the final one and renames at close; destroyed without close it leaves nothing.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/core/result.h"
+
+namespace tet4d::container {
+
+// Four characters as a number whose bytes in the file read as the text.
+constexpr std::uint32_t fourCc(const char (&text)[5]) {
+  return static_cast<std::uint32_t>(static_cast<unsigned char>(text[0])) |
+         static_cast<std::uint32_t>(static_cast<unsigned char>(text[1])) << 8 |
+         static_cast<std::uint32_t>(static_cast<unsigned char>(text[2])) << 16 |
+         static_cast<std::uint32_t>(static_cast<unsigned char>(text[3])) << 24;
+}
+std::string fourCcText(std::uint32_t code);  // printable; other bytes as \xNN
+
+inline constexpr std::size_t kAlignment = 64;        // of sections
+inline constexpr std::size_t kPageAlignment = 4096;  // of page sections and of each page
+inline constexpr std::uint16_t kContainerVersion = 1;
+
+struct FileHeader {
+  unsigned char magic[8];           // @0  "T4D\r\n\x1a\n\0"
+  std::uint32_t endian_mark;        // @8  0x01020304
+  std::uint16_t container_version;  // @12 kContainerVersion
+  std::uint16_t payload_version;    // @14 of the payload named next
+  std::uint32_t payload;            // @16 FourCC
+  std::uint32_t section_count;      // @20
+  std::uint64_t file_bytes;         // @24 whole file
+  std::uint64_t table_offset;       // @32 64-byte aligned
+  std::uint64_t table_xxh3;         // @40 XXH3-64 of the section table
+  std::uint64_t reserved;           // @48 zero
+  std::uint64_t header_xxh3;        // @56 XXH3-64 of bytes 0..55
+};
+static_assert(sizeof(FileHeader) == 64 && offsetof(FileHeader, header_xxh3) == 56);
+
+// Flags of a section.
+inline constexpr std::uint32_t kSectionRequired = 1u << 0;  // a reader that does not know the kind must refuse the file
+inline constexpr std::uint32_t kSectionPaged = 1u << 1;     // checksums are per page (in the page table), xxh3 is zero
+
+struct SectionEntry {
+  std::uint32_t kind;         // @0  FourCC, unique in the file
+  std::uint32_t flags;        // @4  kSection…
+  std::uint64_t offset;       // @8  from the start of the file
+  std::uint64_t bytes;        // @16 without padding; = item_bytes * item_count
+  std::uint64_t item_count;   // @24
+  std::uint32_t item_bytes;   // @32 at least 1
+  std::uint32_t reserved0;    // @36 zero
+  std::uint64_t xxh3;         // @40 XXH3-64 of the content
+  std::uint64_t reserved1[2]; // @48 zero
+};
+static_assert(sizeof(SectionEntry) == 64 && offsetof(SectionEntry, xxh3) == 40);
+
+inline constexpr std::uint32_t kProvenance = fourCc("PROV");  // UTF-8 JSON: program, version, options, input digests
+
+// XXH3-64 of a range.
+std::uint64_t xxh3(std::span<const std::byte> bytes);
+
+// A file mapped read-only. Moves; spans stay valid as long as the Reader lives. No exceptions, O(sections) to open.
+class Reader {
+ public:
+  // Maps `path` and proves its structure. `payload` = FourCC expected, or 0 for any. `known` = the section kinds the
+  // caller understands (beside PROV): a required section of another kind is a refusal.
+  static Result<Reader> open(const std::string& path, std::uint32_t payload, std::uint16_t max_payload_version,
+                             std::span<const std::uint32_t> known);
+
+  const std::string& path() const { return path_; }
+  const FileHeader& header() const { return header_; }
+  std::span<const SectionEntry> sections() const { return sections_; }
+  std::span<const std::byte> file() const { return {data_.get(), size_}; }
+
+  const SectionEntry* find(std::uint32_t kind) const;
+  // The content of a section that must be there, as items of T (item_bytes must be sizeof(T)).
+  template <class T>
+  Result<std::span<const T>> items(std::uint32_t kind) const {
+    auto raw = rawItems(kind, sizeof(T), alignof(T));
+    if (!raw.ok()) return raw.fault();
+    return std::span<const T>(reinterpret_cast<const T*>(raw.value().data()), raw.value().size() / sizeof(T));
+  }
+  // As items(), of exactly one item.
+  template <class T>
+  Result<const T*> single(std::uint32_t kind) const {
+    auto all = items<T>(kind);
+    if (!all.ok()) return all.fault();
+    if (all.value().size() != 1) return fault(kind, "must hold exactly one item");
+    return all.value().data();
+  }
+  // Checks the content's checksum. O(bytes).
+  Status verifySection(const SectionEntry& section) const;
+  // Checks that every byte that belongs to no section is zero, and all sections' checksums. O(file) except page data.
+  Status verifyAll() const;
+  // The provenance JSON, "{}" if there is none.
+  std::string_view provenance() const;
+  // A Fault of this file at a section.
+  Fault fault(std::uint32_t kind, std::string what) const;
+
+ private:
+  struct Unmap {
+    std::size_t size = 0;
+    void operator()(const std::byte* data) const;
+  };
+  Result<std::span<const std::byte>> rawItems(std::uint32_t kind, std::size_t item_bytes, std::size_t alignment) const;
+
+  std::string path_;
+  std::unique_ptr<const std::byte[], Unmap> data_;
+  std::size_t size_ = 0;
+  FileHeader header_{};
+  std::vector<SectionEntry> sections_;
+};
+
+// Payload and version of a file, without opening it fully (for programs that take several payloads).
+Result<FileHeader> peek(const std::string& path);
+
+// Writes a file section by section, in order. Every call returns a Fault on I/O trouble (kNoSpace when the disk is full).
+class Writer {
+ public:
+  // Fails at once if `path` exists and `force` is false, or its directory cannot be written.
+  static Result<Writer> create(const std::string& path, std::uint32_t payload, std::uint16_t payload_version, bool force);
+  ~Writer();
+  Writer(Writer&&) noexcept;
+  Writer& operator=(Writer&&) noexcept;
+
+  // A whole section.
+  Status add(std::uint32_t kind, std::uint32_t flags, std::size_t item_bytes, std::span<const std::byte> content);
+  template <class T>
+  Status add(std::uint32_t kind, std::uint32_t flags, std::span<const T> items) {
+    return add(kind, flags, sizeof(T), std::as_bytes(items));
+  }
+
+  // A page section, streamed: begin, then any number of pages (each aligned to 4096), then end. Nothing else in between.
+  Status beginPages(std::uint32_t kind, std::uint32_t flags);
+  // Appends one page; returns its offset in the file.
+  Result<std::uint64_t> appendPage(std::span<const std::byte> bytes);
+  Status endPages();
+
+  // Writes the table and the header, and renames to the final name. Without it the destructor removes the temporary file.
+  Status close();
+  std::uint64_t bytesWritten() const;
+
+ private:
+  struct State;
+  explicit Writer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tet4d::container

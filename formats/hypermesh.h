@@ -1,0 +1,158 @@
+// hypermesh (.t4h): a tetrahedral 3-manifold in space-time. Ponchio & Hormann 2008, sec. 3.
+//
+// Pages are time slabs in time order. A page owns vertices — a contiguous range of the mesh's global vertex numbers — and
+// tetrahedra. Its tetrahedra use u32 local indices: 0 .. owned-1 are its own vertices, then come the vertices of its runs
+// of foreign vertices (global ranges owned by other pages), in order. Marching hypercubes writes one run per page: the
+// vertices on the next frame's grid. No vertex is stored twice.
+//
+// A geometry page's bytes:  PageHeader (64 B) | vertices Vec4f[owned] | runs Run[runs] | tets u32[4][tets], each part
+// padded with zeros to 64 bytes. entry.counts = {first_vertex, owned, tets, foreign vertices}.
+// Column pages (entry.kind = 1 + c) hold column c of the vertices of the geometry page of the same rank, float32.
+// Sections: HHDR, TIME (f64 per frame), COLS (optional), PAGE/PTAB. docs/formats/hypermesh.md.
+//
+// Orientation: see formats/core/tet_slice.h. Coordinates: index space, t in frames.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/core/coordinates.h"
+#include "formats/paged.h"
+
+namespace tet4d::hypermesh {
+
+inline constexpr std::uint32_t kPayload = container::fourCc("HYPM");
+inline constexpr std::uint16_t kVersion = 1;
+inline constexpr std::uint32_t kHeader = container::fourCc("HHDR");
+inline constexpr std::uint32_t kTimes = container::fourCc("TIME");
+inline constexpr std::uint32_t kColumns = container::fourCc("COLS");
+
+// Flags of a hypermesh.
+inline constexpr std::uint32_t kOnGrid = 1u << 0;         // made from a grid: boundary only on the box's walls, unless:
+inline constexpr std::uint32_t kInnerBoundary = 1u << 1;  // cells were masked (NaN): boundary inside the box is legal
+
+struct MeshHeader {
+  std::uint64_t vertices;      // @0
+  std::uint64_t tets;          // @8
+  std::uint64_t frames;        // @16  entries of TIME
+  std::uint32_t flags;         // @24  kOnGrid …
+  std::uint32_t columns;       // @28  entries of COLS
+  AffineMap index_to_world;    // @32
+  Bounds4f domain;             // @128 the box whose walls may bound the mesh (index space, frames)
+  Bounds4f bounds;             // @160 of the vertices; all zero if there are none
+  double isovalue;             // @192 NaN if there is none
+  std::uint64_t reserved[7];   // @200 zero
+};
+static_assert(sizeof(MeshHeader) == 256 && offsetof(MeshHeader, isovalue) == 192 && offsetof(MeshHeader, domain) == 128);
+
+struct ColumnEntry {
+  char name[56];             // @0  UTF-8, zero-padded, not empty
+  std::uint32_t components;  // @56 1..4 float32 a vertex
+  std::uint32_t reserved;    // @60 zero
+};
+static_assert(sizeof(ColumnEntry) == 64);
+
+struct PageHeader {
+  std::uint64_t first_vertex;  // @0  global number of the page's first own vertex
+  std::uint64_t owned;         // @8
+  std::uint64_t tets;          // @16
+  std::uint64_t runs;          // @24
+  std::uint64_t foreign;       // @32 sum of the runs' counts
+  std::uint64_t reserved[3];   // @40 zero
+};
+static_assert(sizeof(PageHeader) == 64);
+
+struct Run {
+  std::uint64_t first;  // @0 global vertex number
+  std::uint64_t count;  // @8 at least 1
+};
+static_assert(sizeof(Run) == 16);
+
+using Tet = std::array<std::uint32_t, 4>;
+
+// One geometry page, as spans over its bytes. Valid while the bytes are.
+struct PageView {
+  const PageHeader* header = nullptr;
+  std::span<const Vec4f> vertices;  // own
+  std::span<const Run> runs;
+  std::span<const Tet> tets;        // local indices
+  // Global number of a local index. O(runs); for MC files one step.
+  std::uint64_t globalOf(std::uint32_t local) const;
+};
+
+// Spans over a page's bytes, proved: sizes, counts against `entry`, zero padding, finite vertices, runs disjoint from the
+// page's own range and below `total_vertices`, every index in range. O(page).
+Result<PageView> validatePage(std::span<const std::byte> bytes, const paged::PageEntry& entry, const MeshHeader& mesh,
+                              const std::string& file, std::size_t page);
+
+// A page with the positions of its foreign vertices gathered: everything a consumer needs to use local indices.
+struct GatheredPage {
+  paged::PageBytes bytes;        // keeps the view alive
+  PageView view;
+  std::vector<Vec4f> positions;  // own vertices, then foreign ones: positions[local index]
+};
+
+class File {
+ public:
+  static Result<File> open(const std::string& path);
+  const container::Reader& reader() const { return *reader_; }
+  const MeshHeader& header() const { return *header_; }
+  std::span<const double> times() const { return times_; }
+  std::span<const ColumnEntry> columns() const { return columns_; }
+  const paged::Pages& pages() const { return pages_; }
+  // The geometry pages are pages 0 .. geometryPages() - 1 of the page table, in time order.
+  std::size_t geometryPages() const { return geometry_pages_; }
+  const paged::PageEntry& geometryEntry(std::size_t k) const { return pages_.entries()[k]; }
+  // Loads and proves geometry page k and gathers its foreign vertices from the pages that own them. O(page + owners).
+  Result<GatheredPage> gather(std::size_t k) const;
+  // Column c of geometry page k: components * owned floats.
+  Result<paged::PageBytes> loadColumn(std::size_t c, std::size_t k) const;
+  // Sections, padding, all pages and indices. O(file), memory of one page and its neighbours. Faces: topology/.
+  Status verify() const;
+
+ private:
+  Result<paged::PageBytes> loadPage(std::size_t k, PageView& view) const;
+  std::unique_ptr<container::Reader> reader_;
+  const MeshHeader* header_ = nullptr;
+  std::span<const double> times_;
+  std::span<const ColumnEntry> columns_;
+  paged::Pages pages_;
+  std::size_t geometry_pages_ = 0;
+};
+
+// Streams a hypermesh page by page, in time order. Vertices and counts of the header are filled in at close.
+class Writer {
+ public:
+  struct Column {
+    std::string name;
+    std::uint32_t components;
+  };
+  // header: flags, index_to_world, domain, isovalue; the rest is filled in. times: one per frame.
+  static Result<Writer> create(const std::string& path, const MeshHeader& header, std::span<const double> times,
+                               std::span<const Column> columns, paged::Codec codec, bool force);
+  // Adds a slab. `interval` = {first, last} time of its tetrahedra in frames (an empty slab is legal and keeps the rank).
+  // bounds are those of the tetrahedra: pass the box over all vertices used, own or foreign.
+  // columns: one span per declared column, components * vertices.size() floats.
+  Status addPage(std::span<const Vec4f> vertices, std::span<const Run> runs, std::span<const Tet> tets,
+                 const Bounds4f& bounds, std::span<const std::span<const float>> columns = {});
+  std::uint64_t nextVertex() const { return next_vertex_; }
+  std::uint64_t tets() const { return tets_; }
+  Status close(const std::string& provenance_json);
+
+ private:
+  std::unique_ptr<container::Writer> file_;
+  std::unique_ptr<paged::PageWriter> pages_;
+  MeshHeader header_{};
+  std::vector<double> times_;
+  std::vector<Column> columns_;
+  std::vector<std::vector<std::byte>> column_pages_;  // kept until the geometry is complete
+  std::vector<paged::PageEntry> column_entries_;
+  std::uint64_t next_vertex_ = 0, tets_ = 0;
+  Bounds4f bounds_;
+};
+
+}  // namespace tet4d::hypermesh
