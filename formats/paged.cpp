@@ -1,0 +1,165 @@
+#include "formats/paged.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <new>
+
+#ifdef TET4D_WITH_ZSTD
+#include <zstd.h>
+#endif
+
+namespace tet4d::paged {
+namespace {
+
+Fault badPage(const std::string& path, std::size_t i, std::string what) {
+  return {FaultCode::kBadInput, path, "page " + std::to_string(i), std::move(what), "write the file again"};
+}
+
+bool finite(const Vec4f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(p.t); }
+
+// What a page table may say of bounds: finite and ordered, or all zero for an empty page.
+bool boundsOk(const Bounds4f& b) { return finite(b.min) && finite(b.max) && !b.empty(); }
+
+Status checkEntry(const std::string& path, std::size_t i, const PageEntry& e, std::uint64_t begin, std::uint64_t end) {
+  if (e.reserved[0] != 0 || e.reserved[1] != 0) return badPage(path, i, "reserved bytes are not zero");
+  if (e.offset % container::kPageAlignment != 0) return badPage(path, i, "misaligned");
+  if (e.offset < begin || e.offset > end || e.bytes > end - e.offset) return badPage(path, i, "lies outside the page section");
+  if (e.bytes == 0 || e.bytes > kMaxPageBytes || e.raw_bytes == 0 || e.raw_bytes > kMaxPageBytes) {
+    return badPage(path, i, "impossible size");
+  }
+  if (e.codec > static_cast<std::uint32_t>(Codec::kZstd)) return badPage(path, i, "unknown codec " + std::to_string(e.codec));
+  if (e.codec == static_cast<std::uint32_t>(Codec::kRaw) && e.raw_bytes != e.bytes) {
+    return badPage(path, i, "a raw page whose decoded size differs");
+  }
+  if (!boundsOk(e.bounds)) return badPage(path, i, "bounds are not finite or not ordered");
+  if (std::isnan(e.error_estimated) || std::isnan(e.error_measured)) return badPage(path, i, "an error that is not a number");
+  return {};
+}
+
+#ifdef TET4D_WITH_ZSTD
+constexpr int kZstdLevel = 3;
+
+Status decodeZstd(const std::string& path, std::size_t i, std::span<const std::byte> stored, const PageEntry& e,
+                  std::vector<std::uint64_t>& out) {
+  // The frame must say its size itself, so that a forged table cannot make us allocate what will not come.
+  if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != e.raw_bytes) {
+    return badPage(path, i, "the compressed frame has another size than the page table says");
+  }
+  try {
+    out.resize((e.raw_bytes + 7) / 8);
+  } catch (const std::bad_alloc&) {
+    return Fault{FaultCode::kOutOfMemory, path, "page " + std::to_string(i),
+                 "no memory for " + std::to_string(e.raw_bytes) + " bytes", "use a machine with more memory"};
+  }
+  const std::size_t n = ZSTD_decompress(out.data(), e.raw_bytes, stored.data(), stored.size());
+  if (ZSTD_isError(n) != 0U || n != e.raw_bytes) return badPage(path, i, "the compressed frame is damaged");
+  return {};
+}
+#endif
+
+}  // namespace
+
+bool hasCodec(Codec codec) {
+#ifdef TET4D_WITH_ZSTD
+  return codec == Codec::kRaw || codec == Codec::kZstd;
+#else
+  return codec == Codec::kRaw;
+#endif
+}
+
+Result<Pages> Pages::open(const container::Reader& reader) {
+  const container::SectionEntry* section = reader.find(kPages);
+  if (section == nullptr) return reader.fault(kPages, "is missing");
+  if ((section->flags & container::kSectionPaged) == 0) return reader.fault(kPages, "is not marked as paged");
+  auto table = reader.items<PageEntry>(kPageTable);
+  if (!table.ok()) return table.fault();
+  if (Status status = reader.verifySection(*reader.find(kPageTable)); !status.ok()) return status.fault();
+  std::uint64_t free = section->offset;
+  for (std::size_t i = 0; i < table.value().size(); ++i) {
+    const PageEntry& e = table.value()[i];
+    // Pages stand in the order of the table, so one pass proves that none overlap.
+    if (Status status = checkEntry(reader.path(), i, e, section->offset, section->offset + section->bytes); !status.ok()) {
+      return status.fault();
+    }
+    if (e.offset < free) return badPage(reader.path(), i, "overlaps the page before it");
+    free = e.offset + e.bytes;
+  }
+  Pages pages;
+  pages.reader_ = &reader;
+  pages.entries_ = table.value();
+  return pages;
+}
+
+Result<PageBytes> Pages::load(std::size_t i) const {
+  const PageEntry& e = entries_[i];
+  const auto stored = reader_->file().subspan(e.offset, e.bytes);
+  if (container::xxh3(stored) != e.xxh3) return badPage(reader_->path(), i, "checksum mismatch");
+  PageBytes page;
+  page.touched_ = e.bytes;
+  if (e.codec == static_cast<std::uint32_t>(Codec::kRaw)) {
+    page.view_ = stored;
+    return page;
+  }
+#ifdef TET4D_WITH_ZSTD
+  if (Status status = decodeZstd(reader_->path(), i, stored, e, page.owned_); !status.ok()) return status.fault();
+  page.view_ = std::as_bytes(std::span(page.owned_)).first(e.raw_bytes);
+  return page;
+#else
+  return Fault{FaultCode::kNotBuilt, reader_->path(), "page " + std::to_string(i), "is compressed with zstd",
+               "rebuild with TET4D_WITH_ZSTD=ON, or write the file with --page-codec raw"};
+#endif
+}
+
+Status Pages::verifyPadding() const {
+  const container::SectionEntry& section = *reader_->find(kPages);
+  std::uint64_t end = section.offset;
+  for (std::size_t i = 0; i <= entries_.size(); ++i) {
+    const std::uint64_t next = i < entries_.size() ? entries_[i].offset : section.offset + section.bytes;
+    const auto gap = reader_->file().subspan(end, next - end);
+    if (!std::all_of(gap.begin(), gap.end(), [](std::byte b) { return b == std::byte{0}; })) {
+      return Fault{FaultCode::kBadInput, reader_->path(), "byte " + std::to_string(end), "padding is not zero",
+                   "the file is damaged: write it again"};
+    }
+    if (i < entries_.size()) end = entries_[i].offset + entries_[i].bytes;
+  }
+  return {};
+}
+
+Status PageWriter::begin() { return writer_->beginPages(kPages, container::kSectionRequired); }
+
+Status PageWriter::add(std::span<const std::byte> raw, PageEntry entry) {
+  assert(!raw.empty());
+  std::span<const std::byte> stored = raw;
+  entry.codec = static_cast<std::uint32_t>(codec_);
+  if (codec_ == Codec::kZstd) {
+#ifdef TET4D_WITH_ZSTD
+    encoded_.resize(ZSTD_compressBound(raw.size()));
+    const std::size_t n = ZSTD_compress(encoded_.data(), encoded_.size(), raw.data(), raw.size(), kZstdLevel);
+    if (ZSTD_isError(n) != 0U) {
+      return Fault{FaultCode::kOutOfMemory, "", "page " + std::to_string(entries_.size()), ZSTD_getErrorName(n),
+                   "write with --page-codec raw"};
+    }
+    stored = std::span<const std::byte>(encoded_).first(n);
+#else
+    return Fault{FaultCode::kNotBuilt, "", "", "this build cannot compress pages",
+                 "rebuild with TET4D_WITH_ZSTD=ON, or use --page-codec raw"};
+#endif
+  }
+  if (entry.bounds.empty()) entry.bounds = {{0, 0, 0, 0}, {0, 0, 0, 0}};
+  entry.bytes = stored.size();
+  entry.raw_bytes = raw.size();
+  entry.xxh3 = container::xxh3(stored);
+  auto offset = writer_->appendPage(stored);
+  if (!offset.ok()) return offset.fault();
+  entry.offset = offset.value();
+  entries_.push_back(entry);
+  return {};
+}
+
+Status PageWriter::end() {
+  if (Status status = writer_->endPages(); !status.ok()) return status;
+  return writer_->add<PageEntry>(kPageTable, container::kSectionRequired, entries_);
+}
+
+}  // namespace tet4d::paged
