@@ -19,8 +19,10 @@ constexpr std::array<std::byte, kPageAlignment> kZeros{};
 
 Fault writeFault(const std::string& path, const char* doing, int error) {
   const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
-  return {full ? FaultCode::kNoSpace : FaultCode::kIo, path, "", std::string("cannot ") + doing + ": " + std::strerror(error),
-          full ? "free some space or write elsewhere; nothing was left behind" : "check the folder and its permissions"};
+  return {
+      full ? FaultCode::kNoSpace : FaultCode::kIo, path, "",
+      std::string("cannot ") + doing + ": " + std::strerror(error),
+      full ? "free some space or write elsewhere; nothing was left behind" : "check the folder and its permissions"};
 }
 
 // The permissions a plain open() would have given.
@@ -70,9 +72,11 @@ Writer::~Writer() = default;
 Writer::Writer(Writer&&) noexcept = default;
 Writer& Writer::operator=(Writer&&) noexcept = default;
 
-Result<Writer> Writer::create(const std::string& path, std::uint32_t payload, std::uint16_t payload_version, bool force) {
+Result<Writer> Writer::create(const std::string& path, std::uint32_t payload, std::uint16_t payload_version,
+                              bool force) {
   if (path.empty() || path == "-") {
-    return Fault{FaultCode::kUsage, path, "", "a container cannot be written to standard output", "name a file with -o"};
+    return Fault{FaultCode::kUsage, path, "", "a container cannot be written to standard output",
+                 "name a file with -o"};
   }
   if (!force && ::access(path.c_str(), F_OK) == 0) {
     return Fault{FaultCode::kIo, path, "", "exists and is kept", "remove it, choose another name, or pass --force"};
@@ -95,7 +99,8 @@ Result<Writer> Writer::create(const std::string& path, std::uint32_t payload, st
   return Writer(std::move(state));
 }
 
-Status Writer::add(std::uint32_t kind, std::uint32_t flags, std::size_t item_bytes, std::span<const std::byte> content) {
+Status Writer::add(std::uint32_t kind, std::uint32_t flags, std::size_t item_bytes,
+                   std::span<const std::byte> content) {
   if (Status status = state_->align(kAlignment); !status.ok()) return status;
   SectionEntry entry{};
   entry.kind = kind;
@@ -140,7 +145,8 @@ Status Writer::endPages() {
 
 Status Writer::close() {
   State& s = *state_;
-  assert(!s.in_pages && s.fd >= 0);
+  assert(!s.in_pages);
+  if (s.fd < 0) return Fault{FaultCode::kUsage, s.path, "", "the file is closed already", ""};
   if (Status status = s.align(kAlignment); !status.ok()) return status;
   s.header.table_offset = s.position;
   s.header.section_count = static_cast<std::uint32_t>(s.sections.size());

@@ -36,19 +36,23 @@ Status checkHeader(const std::string& path, const FileHeader& header, std::uint6
     return badHeader(path, "not a tet4d file", "tet4d-info lists what a tet4d file holds; tet4d-convert reads others");
   }
   if (std::memcmp(header.magic, kMagic, 8) != 0) {
-    return badHeader(path, "the magic bytes are damaged", "the file went through a text-mode transfer: copy it as binary");
+    return badHeader(path, "the magic bytes are damaged",
+                     "the file went through a text-mode transfer: copy it as binary");
   }
   if (header.endian_mark != kEndianMark) return badHeader(path, "the byte order mark is wrong");
   const auto bytes = std::as_bytes(std::span(&header, 1)).first(offsetof(FileHeader, header_xxh3));
   if (xxh3(bytes) != header.header_xxh3) return badHeader(path, "checksum mismatch");
   if (header.container_version != kContainerVersion) {
-    return badHeader(path, "container version " + std::to_string(header.container_version) + ", this program knows " +
-                               std::to_string(kContainerVersion), "use a matching version of tet4d");
+    return badHeader(path,
+                     "container version " + std::to_string(header.container_version) + ", this program knows " +
+                         std::to_string(kContainerVersion),
+                     "use a matching version of tet4d");
   }
   if (header.reserved != 0) return badHeader(path, "reserved bytes are not zero");
   if (header.file_bytes != size) {
-    return badHeader(path, "the header says " + std::to_string(header.file_bytes) + " bytes, the file has " +
-                               std::to_string(size), "the file is cut off or was appended to: copy or write it again");
+    return badHeader(
+        path, "the header says " + std::to_string(header.file_bytes) + " bytes, the file has " + std::to_string(size),
+        "the file is cut off or was appended to: copy or write it again");
   }
   if (header.table_offset % kAlignment != 0 || header.table_offset < sizeof(FileHeader) || header.table_offset > size ||
       header.section_count > (size - header.table_offset) / sizeof(SectionEntry)) {
@@ -87,8 +91,9 @@ std::vector<Range> occupied(const FileHeader& header, std::span<const SectionEnt
   std::vector<Range> ranges{{0, sizeof(FileHeader)},
                             {header.table_offset, std::uint64_t{header.section_count} * sizeof(SectionEntry)}};
   for (const SectionEntry& s : sections) ranges.push_back({s.offset, s.bytes});
-  std::sort(ranges.begin(), ranges.end(),
-            [](const Range& a, const Range& b) { return a.offset != b.offset ? a.offset < b.offset : a.bytes < b.bytes; });
+  std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) {
+    return a.offset != b.offset ? a.offset < b.offset : a.bytes < b.bytes;
+  });
   return ranges;
 }
 
@@ -140,7 +145,7 @@ void Reader::Unmap::operator()(const std::byte* data) const { munmap(const_cast<
 
 Result<Reader> Reader::open(const std::string& path, std::uint32_t payload, std::uint16_t max_payload_version,
                             std::span<const std::uint32_t> known) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a named pipe must not make us wait
   if (fd < 0) return systemFault(path, "open");
   struct stat info {};
   const bool regular = fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
@@ -167,8 +172,10 @@ Result<Reader> Reader::open(const std::string& path, std::uint32_t payload, std:
                      "tet4d-info says what a file is and which program takes it");
   }
   if (payload != 0 && (header.payload_version == 0 || header.payload_version > max_payload_version)) {
-    return badHeader(path, "payload version " + std::to_string(header.payload_version) + ", this program knows 1 to " +
-                               std::to_string(max_payload_version), "use a newer version of tet4d");
+    return badHeader(path,
+                     "payload version " + std::to_string(header.payload_version) + ", this program knows 1 to " +
+                         std::to_string(max_payload_version),
+                     "use a newer version of tet4d");
   }
   const auto table = reader.file().subspan(header.table_offset, header.section_count * sizeof(SectionEntry));
   if (xxh3(table) != header.table_xxh3) return badHeader(path, "checksum mismatch of the section table");
@@ -206,9 +213,11 @@ Result<std::span<const std::byte>> Reader::rawItems(std::uint32_t kind, std::siz
   const SectionEntry* section = find(kind);
   if (section == nullptr) return fault(kind, "is missing");
   if (section->item_bytes != item_bytes) {
-    return fault(kind, "has items of " + std::to_string(section->item_bytes) + " bytes, expected " +
-                           std::to_string(item_bytes));
+    return fault(
+        kind, "has items of " + std::to_string(section->item_bytes) + " bytes, expected " + std::to_string(item_bytes));
   }
+  if ((section->flags & kSectionPaged) != 0)
+    return fault(kind, "is marked as paged, which leaves it without a checksum");
   if (alignment > kAlignment) return fault(kind, "cannot be aligned as its items need");
   return file().subspan(section->offset, section->bytes);
 }

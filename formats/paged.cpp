@@ -16,24 +16,41 @@ Fault badPage(const std::string& path, std::size_t i, std::string what) {
   return {FaultCode::kBadInput, path, "page " + std::to_string(i), std::move(what), "write the file again"};
 }
 
-bool finite(const Vec4f& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(p.t); }
+bool finite(const Vec4f& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(p.t);
+}
 
-// What a page table may say of bounds: finite and ordered, or all zero for an empty page.
+// What a page table may say of bounds: finite and ordered, an empty page's too (all zero).
 bool boundsOk(const Bounds4f& b) { return finite(b.min) && finite(b.max) && !b.empty(); }
+
+bool errorOk(float error) { return std::isfinite(error) && (error >= 0 || error == -1); }
+
+// A zstd block is at least 4 bytes long and at most 128 KiB once decoded: no honest page claims more than that, and a
+// forged one cannot make us allocate what will not come.
+constexpr std::uint64_t kMaxZstdRatio = std::uint64_t{128} * 1024 / 4;
 
 Status checkEntry(const std::string& path, std::size_t i, const PageEntry& e, std::uint64_t begin, std::uint64_t end) {
   if (e.reserved[0] != 0 || e.reserved[1] != 0) return badPage(path, i, "reserved bytes are not zero");
   if (e.offset % container::kPageAlignment != 0) return badPage(path, i, "misaligned");
-  if (e.offset < begin || e.offset > end || e.bytes > end - e.offset) return badPage(path, i, "lies outside the page section");
+  if (e.offset < begin || e.offset > end || e.bytes > end - e.offset)
+    return badPage(path, i, "lies outside the page section");
   if (e.bytes == 0 || e.bytes > kMaxPageBytes || e.raw_bytes == 0 || e.raw_bytes > kMaxPageBytes) {
     return badPage(path, i, "impossible size");
   }
-  if (e.codec > static_cast<std::uint32_t>(Codec::kZstd)) return badPage(path, i, "unknown codec " + std::to_string(e.codec));
+  if (e.codec > static_cast<std::uint32_t>(Codec::kZstd))
+    return badPage(path, i, "unknown codec " + std::to_string(e.codec));
   if (e.codec == static_cast<std::uint32_t>(Codec::kRaw) && e.raw_bytes != e.bytes) {
     return badPage(path, i, "a raw page whose decoded size differs");
   }
+  if (e.codec == static_cast<std::uint32_t>(Codec::kZstd) && e.raw_bytes / kMaxZstdRatio > e.bytes) {
+    return badPage(path, i,
+                   "claims " + std::to_string(e.raw_bytes) + " bytes, more than its " + std::to_string(e.bytes) +
+                       " stored bytes can decode to");
+  }
   if (!boundsOk(e.bounds)) return badPage(path, i, "bounds are not finite or not ordered");
-  if (std::isnan(e.error_estimated) || std::isnan(e.error_measured)) return badPage(path, i, "an error that is not a number");
+  if (!errorOk(e.error_estimated) || !errorOk(e.error_measured)) {
+    return badPage(path, i, "an error that is neither -1 nor a finite number from 0");
+  }
   return {};
 }
 
@@ -42,7 +59,10 @@ constexpr int kZstdLevel = 3;
 
 Status decodeZstd(const std::string& path, std::size_t i, std::span<const std::byte> stored, const PageEntry& e,
                   std::vector<std::uint64_t>& out) {
-  // The frame must say its size itself, so that a forged table cannot make us allocate what will not come.
+  // ZSTD_decompress would take several frames and skippable ones; a page is exactly one, complete.
+  if (ZSTD_findFrameCompressedSize(stored.data(), stored.size()) != stored.size()) {
+    return badPage(path, i, "is not exactly one compressed frame");
+  }
   if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != e.raw_bytes) {
     return badPage(path, i, "the compressed frame has another size than the page table says");
   }
@@ -72,6 +92,7 @@ Result<Pages> Pages::open(const container::Reader& reader) {
   const container::SectionEntry* section = reader.find(kPages);
   if (section == nullptr) return reader.fault(kPages, "is missing");
   if ((section->flags & container::kSectionPaged) == 0) return reader.fault(kPages, "is not marked as paged");
+  if (section->item_bytes != 1) return reader.fault(kPages, "has items of more than a byte");
   auto table = reader.items<PageEntry>(kPageTable);
   if (!table.ok()) return table.fault();
   if (Status status = reader.verifySection(*reader.find(kPageTable)); !status.ok()) return status.fault();
@@ -79,7 +100,8 @@ Result<Pages> Pages::open(const container::Reader& reader) {
   for (std::size_t i = 0; i < table.value().size(); ++i) {
     const PageEntry& e = table.value()[i];
     // Pages stand in the order of the table, so one pass proves that none overlap.
-    if (Status status = checkEntry(reader.path(), i, e, section->offset, section->offset + section->bytes); !status.ok()) {
+    if (Status status = checkEntry(reader.path(), i, e, section->offset, section->offset + section->bytes);
+        !status.ok()) {
       return status.fault();
     }
     if (e.offset < free) return badPage(reader.path(), i, "overlaps the page before it");
@@ -130,6 +152,11 @@ Status PageWriter::begin() { return writer_->beginPages(kPages, container::kSect
 
 Status PageWriter::add(std::span<const std::byte> raw, PageEntry entry) {
   assert(!raw.empty());
+  if (raw.size() > kMaxPageBytes) {
+    return Fault{FaultCode::kBadInput, "", "page " + std::to_string(entries_.size()),
+                 std::to_string(raw.size()) + " bytes, a page may have " + std::to_string(kMaxPageBytes),
+                 "cut the data into more pages"};
+  }
   std::span<const std::byte> stored = raw;
   entry.codec = static_cast<std::uint32_t>(codec_);
   if (codec_ == Codec::kZstd) {
