@@ -1,13 +1,14 @@
 // The container of every mappable tet4d file: a 64-byte header, sections, a table of sections.
 //
-//   header (64 B) | sections, each 64-byte aligned (page sections 4096), zero padding between | section table (64 B each)
+//   header (64 B) | sections, each 64-byte aligned (page sections 4096), zero padding between | section table (64 B
+//   each)
 //
 // All numbers are little-endian. docs/formats/container.md suffices to write a reader; scripts/readers proves it.
 //
-// Reader: maps the file and proves structure — sizes, ranges, overlaps, counts, alignment, zero reserved fields, table and
-// header checksums — before it hands out a span. Sections of an unknown optional kind are skipped; an unknown required
-// kind is a refusal. Section and page contents are proved by verifySection() and paged::Pages::load().
-// Writer: streams to a temporary name beside the final one and renames at close; destroyed without close it leaves nothing.
+// Reader: maps the file and proves structure — sizes, ranges, overlaps, counts, alignment, zero reserved fields, table
+// and header checksums — before it hands out a span. Sections of an unknown optional kind are skipped; an unknown
+// required kind is a refusal. Section and page contents are proved by verifySection() and paged::Pages::load(). Writer:
+// streams to a temporary name beside the final one and renames at close; destroyed without close it leaves nothing.
 #pragma once
 
 #include <cstddef>
@@ -56,15 +57,15 @@ inline constexpr std::uint32_t kSectionRequired = 1u << 0;  // a reader that doe
 inline constexpr std::uint32_t kSectionPaged = 1u << 1;     // checksums are per page (in the page table), xxh3 is zero
 
 struct SectionEntry {
-  std::uint32_t kind;         // @0  FourCC, unique in the file
-  std::uint32_t flags;        // @4  kSection…
-  std::uint64_t offset;       // @8  from the start of the file
-  std::uint64_t bytes;        // @16 without padding; = item_bytes * item_count
-  std::uint64_t item_count;   // @24
-  std::uint32_t item_bytes;   // @32 at least 1
-  std::uint32_t reserved0;    // @36 zero
-  std::uint64_t xxh3;         // @40 XXH3-64 of the content
-  std::uint64_t reserved1[2]; // @48 zero
+  std::uint32_t kind;          // @0  FourCC, unique in the file
+  std::uint32_t flags;         // @4  kSection…
+  std::uint64_t offset;        // @8  from the start of the file
+  std::uint64_t bytes;         // @16 without padding; = item_bytes * item_count
+  std::uint64_t item_count;    // @24
+  std::uint32_t item_bytes;    // @32 at least 1
+  std::uint32_t reserved0;     // @36 zero
+  std::uint64_t xxh3;          // @40 XXH3-64 of the content
+  std::uint64_t reserved1[2];  // @48 zero
 };
 static_assert(sizeof(SectionEntry) == 64 && offsetof(SectionEntry, xxh3) == 40);
 
@@ -113,7 +114,7 @@ class Reader {
 
  private:
   struct Unmap {
-    std::size_t size = 0;
+    std::size_t size;  // of the mapping
     void operator()(const std::byte* data) const;
   };
   Result<std::span<const std::byte>> rawItems(std::uint32_t kind, std::size_t item_bytes, std::size_t alignment) const;
@@ -128,11 +129,13 @@ class Reader {
 // Payload and version of a file, without opening it fully (for programs that take several payloads).
 Result<FileHeader> peek(const std::string& path);
 
-// Writes a file section by section, in order. Every call returns a Fault on I/O trouble (kNoSpace when the disk is full).
+// Writes a file section by section, in order. Every call returns a Fault on I/O trouble (kNoSpace when the disk is
+// full).
 class Writer {
  public:
   // Fails at once if `path` exists and `force` is false, or its directory cannot be written.
-  static Result<Writer> create(const std::string& path, std::uint32_t payload, std::uint16_t payload_version, bool force);
+  static Result<Writer> create(const std::string& path, std::uint32_t payload, std::uint16_t payload_version,
+                               bool force);
   ~Writer();
   Writer(Writer&&) noexcept;
   Writer& operator=(Writer&&) noexcept;
@@ -144,13 +147,15 @@ class Writer {
     return add(kind, flags, sizeof(T), std::as_bytes(items));
   }
 
-  // A page section, streamed: begin, then any number of pages (each aligned to 4096), then end. Nothing else in between.
+  // A page section, streamed: begin, then any number of pages (each aligned to 4096), then end. Nothing else in
+  // between.
   Status beginPages(std::uint32_t kind, std::uint32_t flags);
   // Appends one page; returns its offset in the file.
   Result<std::uint64_t> appendPage(std::span<const std::byte> bytes);
   Status endPages();
 
-  // Writes the table and the header, and renames to the final name. Without it the destructor removes the temporary file.
+  // Writes the table and the header, and renames to the final name. Without it the destructor removes the temporary
+  // file.
   Status close();
   std::uint64_t bytesWritten() const;
 

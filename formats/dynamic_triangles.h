@@ -2,10 +2,11 @@
 //
 // A page stands alone: it maps and draws without any other. Its bytes:
 //   PageHeader (64 B) | vertices Vec4f[v] | edges Edge[e] | lifespans Lifespan[n] | triangles u32[3][n]
-// each part padded with zeros to 64 bytes. entry.counts = {vertices, edges, triangles, 0}; entry.bounds.t = the union of the
-// lifespans. An edge runs forward in time (vertices[a].t < vertices[b].t): edges of constant time do not exist. A
-// triangle's lifespan is [begin, end) — closed at the file's last time — and equals the intersection of its edges'
-// intervals. Triangles are sorted by begin, then as built. Sections: DHDR, TIME, PAGE/PTAB. docs/formats/dynamic_triangles.md.
+// each part padded with zeros to 64 bytes. entry.counts = {vertices, edges, triangles, 0}; entry.bounds.t = the union
+// of the lifespans. An edge runs forward in time (vertices[a].t < vertices[b].t): edges of constant time do not exist.
+// A triangle's lifespan is [begin, end) — closed at the file's last time — and equals the intersection of its edges'
+// intervals. Triangles are sorted by begin, then as built. Sections: DHDR, TIME, PAGE/PTAB.
+// docs/formats/dynamic_triangles.md.
 #pragma once
 
 #include <array>
@@ -63,8 +64,8 @@ struct PageView {
   std::span<const Triangle> triangles;
 };
 
-// Spans over a page's bytes, proved: sizes, counts, padding, finite vertices, every index, edges forward in time, lifespans
-// equal to their edges' intersection and sorted by begin. O(page).
+// Spans over a page's bytes, proved: sizes, counts, padding, finite vertices, every index, edges forward in time,
+// lifespans equal to their edges' intersection and sorted by begin. O(page).
 Result<PageView> validatePage(std::span<const std::byte> bytes, const paged::PageEntry& entry, const std::string& file,
                               std::size_t page);
 

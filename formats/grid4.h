@@ -38,8 +38,10 @@ class File {
   const GridHeader& header() const { return *header_; }
   std::span<const double> times() const { return times_; }
   const paged::Pages& pages() const { return pages_; }
-  std::uint64_t frameBytes() const { return header_->dims[0] * header_->dims[1] * header_->dims[2] *
-                                            sampleBytes(static_cast<SampleType>(header_->sample_type)); }
+  std::uint64_t frameBytes() const {
+    return header_->dims[0] * header_->dims[1] * header_->dims[2] *
+           sampleBytes(static_cast<SampleType>(header_->sample_type));
+  }
   // Checksum, size of page k. (Every sample value is legal.)
   Result<paged::PageBytes> loadFrame(std::size_t k) const { return pages_.load(k); }
   // Everything: sections, padding, all pages. O(file).

@@ -1,14 +1,15 @@
 // hypermesh (.t4h): a tetrahedral 3-manifold in space-time. Ponchio & Hormann 2008, sec. 3.
 //
-// Pages are time slabs in time order. A page owns vertices — a contiguous range of the mesh's global vertex numbers — and
-// tetrahedra. Its tetrahedra use u32 local indices: 0 .. owned-1 are its own vertices, then come the vertices of its runs
-// of foreign vertices (global ranges owned by other pages), in order. Marching hypercubes writes one run per page: the
-// vertices on the next frame's grid. No vertex is stored twice.
+// Pages are time slabs in time order. A page owns vertices — a contiguous range of the mesh's global vertex numbers —
+// and tetrahedra. Its tetrahedra use u32 local indices: 0 .. owned-1 are its own vertices, then come the vertices of
+// its runs of foreign vertices (global ranges owned by other pages), in order. Marching hypercubes writes one run per
+// page: the vertices on the next frame's grid. No vertex is stored twice.
 //
 // A geometry page's bytes:  PageHeader (64 B) | vertices Vec4f[owned] | runs Run[runs] | tets u32[4][tets], each part
 // padded with zeros to 64 bytes. entry.counts = {first_vertex, owned, tets, foreign vertices}.
-// Column pages (entry.kind = 1 + c) hold column c of the vertices of the geometry page of the same rank, float32.
-// Sections: HHDR, TIME (f64 per frame), COLS (optional), PAGE/PTAB. docs/formats/hypermesh.md.
+// Each geometry page (entry.kind = 0) is followed by its column pages (entry.kind = 1 + c): column c of its own
+// vertices, float32, zero-padded to 64 bytes. So page k * (1 + columns) of the table is geometry page k. Sections:
+// HHDR, TIME (f64 per frame), COLS (optional), PAGE/PTAB. docs/formats/hypermesh.md.
 //
 // Orientation: see formats/core/tet_slice.h. Coordinates: index space, t in frames.
 #pragma once
@@ -36,18 +37,19 @@ inline constexpr std::uint32_t kOnGrid = 1u << 0;         // made from a grid: b
 inline constexpr std::uint32_t kInnerBoundary = 1u << 1;  // cells were masked (NaN): boundary inside the box is legal
 
 struct MeshHeader {
-  std::uint64_t vertices;      // @0
-  std::uint64_t tets;          // @8
-  std::uint64_t frames;        // @16  entries of TIME
-  std::uint32_t flags;         // @24  kOnGrid …
-  std::uint32_t columns;       // @28  entries of COLS
-  AffineMap index_to_world;    // @32
-  Bounds4f domain;             // @128 the box whose walls may bound the mesh (index space, frames)
-  Bounds4f bounds;             // @160 of the vertices; all zero if there are none
-  double isovalue;             // @192 NaN if there is none
-  std::uint64_t reserved[7];   // @200 zero
+  std::uint64_t vertices;     // @0
+  std::uint64_t tets;         // @8
+  std::uint64_t frames;       // @16  entries of TIME
+  std::uint32_t flags;        // @24  kOnGrid …
+  std::uint32_t columns;      // @28  entries of COLS
+  AffineMap index_to_world;   // @32
+  Bounds4f domain;            // @128 the box whose walls may bound the mesh (index space, frames)
+  Bounds4f bounds;            // @160 of the vertices; all zero if there are none
+  double isovalue;            // @192 NaN if there is none
+  std::uint64_t reserved[7];  // @200 zero
 };
-static_assert(sizeof(MeshHeader) == 256 && offsetof(MeshHeader, isovalue) == 192 && offsetof(MeshHeader, domain) == 128);
+static_assert(sizeof(MeshHeader) == 256 && offsetof(MeshHeader, isovalue) == 192 &&
+              offsetof(MeshHeader, domain) == 128);
 
 struct ColumnEntry {
   char name[56];             // @0  UTF-8, zero-padded, not empty
@@ -79,19 +81,19 @@ struct PageView {
   const PageHeader* header = nullptr;
   std::span<const Vec4f> vertices;  // own
   std::span<const Run> runs;
-  std::span<const Tet> tets;        // local indices
+  std::span<const Tet> tets;  // local indices
   // Global number of a local index. O(runs); for MC files one step.
   std::uint64_t globalOf(std::uint32_t local) const;
 };
 
-// Spans over a page's bytes, proved: sizes, counts against `entry`, zero padding, finite vertices, runs disjoint from the
-// page's own range and below `total_vertices`, every index in range. O(page).
+// Spans over a page's bytes, proved: sizes, counts against `entry`, zero padding, finite vertices, runs disjoint from
+// the page's own range and below `total_vertices`, every index in range. O(page).
 Result<PageView> validatePage(std::span<const std::byte> bytes, const paged::PageEntry& entry, const MeshHeader& mesh,
                               const std::string& file, std::size_t page);
 
 // A page with the positions of its foreign vertices gathered: everything a consumer needs to use local indices.
 struct GatheredPage {
-  paged::PageBytes bytes;        // keeps the view alive
+  paged::PageBytes bytes;  // keeps the view alive
   PageView view;
   std::vector<Vec4f> positions;  // own vertices, then foreign ones: positions[local index]
 };
@@ -104,9 +106,9 @@ class File {
   std::span<const double> times() const { return times_; }
   std::span<const ColumnEntry> columns() const { return columns_; }
   const paged::Pages& pages() const { return pages_; }
-  // The geometry pages are pages 0 .. geometryPages() - 1 of the page table, in time order.
-  std::size_t geometryPages() const { return geometry_pages_; }
-  const paged::PageEntry& geometryEntry(std::size_t k) const { return pages_.entries()[k]; }
+  // Geometry pages, in time order; they are every (1 + columns)-th page of the page table.
+  std::size_t geometryPages() const { return pages_.size() / stride(); }
+  const paged::PageEntry& geometryEntry(std::size_t k) const { return pages_.entries()[k * stride()]; }
   // Loads and proves geometry page k and gathers its foreign vertices from the pages that own them. O(page + owners).
   Result<GatheredPage> gather(std::size_t k) const;
   // Column c of geometry page k: components * owned floats.
@@ -115,13 +117,13 @@ class File {
   Status verify() const;
 
  private:
+  std::size_t stride() const { return 1 + columns_.size(); }
   Result<paged::PageBytes> loadPage(std::size_t k, PageView& view) const;
   std::unique_ptr<container::Reader> reader_;
   const MeshHeader* header_ = nullptr;
   std::span<const double> times_;
   std::span<const ColumnEntry> columns_;
   paged::Pages pages_;
-  std::size_t geometry_pages_ = 0;
 };
 
 // Streams a hypermesh page by page, in time order. Vertices and counts of the header are filled in at close.
@@ -134,8 +136,8 @@ class Writer {
   // header: flags, index_to_world, domain, isovalue; the rest is filled in. times: one per frame.
   static Result<Writer> create(const std::string& path, const MeshHeader& header, std::span<const double> times,
                                std::span<const Column> columns, paged::Codec codec, bool force);
-  // Adds a slab. `interval` = {first, last} time of its tetrahedra in frames (an empty slab is legal and keeps the rank).
-  // bounds are those of the tetrahedra: pass the box over all vertices used, own or foreign.
+  // Adds a slab (an empty one is legal and keeps the rank).
+  // bounds: the box over all vertices its tetrahedra use, own or foreign; t is the slab's time interval.
   // columns: one span per declared column, components * vertices.size() floats.
   Status addPage(std::span<const Vec4f> vertices, std::span<const Run> runs, std::span<const Tet> tets,
                  const Bounds4f& bounds, std::span<const std::span<const float>> columns = {});
@@ -149,8 +151,6 @@ class Writer {
   MeshHeader header_{};
   std::vector<double> times_;
   std::vector<Column> columns_;
-  std::vector<std::vector<std::byte>> column_pages_;  // kept until the geometry is complete
-  std::vector<paged::PageEntry> column_entries_;
   std::uint64_t next_vertex_ = 0, tets_ = 0;
   Bounds4f bounds_;
 };

@@ -1,8 +1,9 @@
-// Pages: the unit that is read, checked, decoded and evicted. Time slabs of a hypermesh, frames of a grid and patches are
-// pages; only what lies inside one differs.
+// Pages: the unit that is read, checked, decoded and evicted. Time slabs of a hypermesh, frames of a grid and patches
+// are pages; only what lies inside one differs.
 //
-// A paged file has a page section (PAGE: the pages' bytes, each 4096-aligned) and a page table (PTAB: one PageEntry each).
-// open() proves every entry against the page section; load() checks the checksum, decodes if needed and hands out bytes.
+// A paged file has a page section (PAGE: the pages' bytes, each 4096-aligned) and a page table (PTAB: one PageEntry
+// each). open() proves every entry against the page section; load() checks the checksum, decodes if needed and hands
+// out bytes.
 #pragma once
 
 #include <cstddef>
@@ -24,17 +25,17 @@ enum class Codec : std::uint32_t {
 };
 
 struct PageEntry {
-  std::uint64_t offset;        // @0  from the start of the file, 4096-aligned, inside PAGE
-  std::uint64_t bytes;         // @8  as stored
-  std::uint64_t raw_bytes;     // @16 after decoding; = bytes for kRaw
-  std::uint64_t xxh3;          // @24 of the stored bytes
-  std::uint32_t codec;         // @32 Codec
-  std::uint32_t kind;          // @36 payload's: 0 = geometry or samples, 1 + c = column c
-  Bounds4f bounds;             // @40 index space; t is the time interval in frames
-  float error_estimated;       // @72 payload's unit; 0 = exact with respect to its input, -1 = not estimated
-  float error_measured;        // @76 by an independent pass; -1 = not measured
-  std::uint64_t counts[4];     // @80 payload's, so that plans need not touch pages
-  std::uint64_t reserved[2];   // @112 zero
+  std::uint64_t offset;       // @0  from the start of the file, 4096-aligned, inside PAGE
+  std::uint64_t bytes;        // @8  as stored
+  std::uint64_t raw_bytes;    // @16 after decoding; = bytes for kRaw
+  std::uint64_t xxh3;         // @24 of the stored bytes
+  std::uint32_t codec;        // @32 Codec
+  std::uint32_t kind;         // @36 payload's: 0 = geometry or samples, 1 + c = column c
+  Bounds4f bounds;            // @40 index space; t is the time interval in frames
+  float error_estimated;      // @72 payload's unit; 0 = exact with respect to its input, -1 = not estimated
+  float error_measured;       // @76 by an independent pass; -1 = not measured
+  std::uint64_t counts[4];    // @80 payload's, so that plans need not touch pages
+  std::uint64_t reserved[2];  // @112 zero
 };
 static_assert(sizeof(PageEntry) == 128 && offsetof(PageEntry, bounds) == 40 && offsetof(PageEntry, counts) == 80);
 
@@ -57,7 +58,8 @@ class PageBytes {
 // The page table of an open file. A view: the Reader must outlive it.
 class Pages {
  public:
-  // Proves the table: offsets, alignment, order, no overlap, sizes, codecs, finite ordered bounds, zero reserved. O(pages).
+  // Proves the table: offsets, alignment, order, no overlap, sizes, codecs, finite ordered bounds, zero reserved.
+  // O(pages).
   static Result<Pages> open(const container::Reader& reader);
   std::span<const PageEntry> entries() const { return entries_; }
   std::size_t size() const { return entries_.size(); }

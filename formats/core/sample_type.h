@@ -9,7 +9,16 @@
 namespace tet4d {
 
 enum class SampleType : std::uint32_t {
-  kU8 = 1, kI8 = 2, kU16 = 3, kI16 = 4, kU32 = 5, kI32 = 6, kU64 = 7, kI64 = 8, kF32 = 9, kF64 = 10,
+  kU8 = 1,
+  kI8 = 2,
+  kU16 = 3,
+  kI16 = 4,
+  kU32 = 5,
+  kI32 = 6,
+  kU64 = 7,
+  kI64 = 8,
+  kF32 = 9,
+  kF64 = 10,
 };
 
 // Bytes of one sample; 0 for a value that is no SampleType.
