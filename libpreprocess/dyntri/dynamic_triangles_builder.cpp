@@ -1,0 +1,133 @@
+// Ponchio & Hormann, "Interactive Rendering of Dynamic Geometry", TVCG 2008, sec. 7.1.
+#include "libpreprocess/dyntri/dynamic_triangles_builder.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "formats/core/tet_slice.h"
+#include "libpreprocess/error.h"
+
+namespace tet4d::dyntri {
+namespace {
+
+using EdgeKey = std::uint64_t;  // earlier vertex in the high half, later one in the low half
+
+struct RawTriangle {
+  std::array<EdgeKey, 3> edges;
+  Lifespan life;
+};
+
+// The triangles of one tetrahedron that live at all.
+void appendTriangles(const hypermesh::Tet& tet, std::span<const Vec4f> positions, std::vector<RawTriangle>& out) {
+  const auto time = [&](std::size_t i) { return positions[tet[i]].t; };
+  const TimeOrder order = orderByTime(time(0), time(1), time(2), time(3));
+  for (const DynTriRule& rule : kDynTriRules) {
+    const Lifespan life{time(order.at[rule.begin]), time(order.at[rule.end])};
+    if (!(life.begin < life.end)) continue;
+    RawTriangle triangle{{}, life};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto& ends = kTetEdges[rule.edges[c]];
+      triangle.edges[c] = EdgeKey{tet[order.at[ends[0]]]} << 32 | tet[order.at[ends[1]]];
+    }
+    if (order.odd) std::swap(triangle.edges[1], triangle.edges[2]);
+    out.push_back(triangle);
+  }
+}
+
+// Numbers keys 0, 1, … in the order in which they first appear. `keys` is consumed.
+class FirstUse {
+ public:
+  explicit FirstUse(std::vector<std::uint64_t> keys) : sorted_(std::move(keys)) {
+    std::sort(sorted_.begin(), sorted_.end());
+    sorted_.erase(std::unique(sorted_.begin(), sorted_.end()), sorted_.end());
+    number_.assign(sorted_.size(), kNone);
+  }
+  // The number of `key`; `fresh` says that it was given just now.
+  std::uint32_t number(std::uint64_t key, bool& fresh) {
+    const auto at = static_cast<std::size_t>(std::lower_bound(sorted_.begin(), sorted_.end(), key) - sorted_.begin());
+    fresh = number_[at] == kNone;
+    if (fresh) number_[at] = next_++;
+    return number_[at];
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint64_t> sorted_;
+  std::vector<std::uint32_t> number_;
+  std::uint32_t next_ = 0;
+};
+
+}  // namespace
+
+BuiltPage buildPage(std::span<const hypermesh::Tet> tets, std::span<const Vec4f> positions) {
+  std::vector<RawTriangle> raw;
+  raw.reserve(3 * tets.size());
+  for (const hypermesh::Tet& tet : tets) appendTriangles(tet, positions, raw);
+  std::stable_sort(raw.begin(), raw.end(),
+                   [](const RawTriangle& a, const RawTriangle& b) { return a.life.begin < b.life.begin; });
+
+  std::vector<std::uint64_t> keys;
+  keys.reserve(3 * raw.size());
+  for (const RawTriangle& triangle : raw) keys.insert(keys.end(), triangle.edges.begin(), triangle.edges.end());
+  FirstUse edge_numbers(std::move(keys));
+
+  BuiltPage page;
+  page.tets = tets.size();
+  page.empty = boundTriangles(tets.size()) - raw.size();
+  page.lifespans.reserve(raw.size());
+  page.triangles.reserve(raw.size());
+  // Vertices are few and their numbers dense: a plain table names them.
+  std::vector<std::uint32_t> vertex_number(positions.size(), std::numeric_limits<std::uint32_t>::max());
+  const auto vertexNumber = [&](std::uint64_t local) {
+    std::uint32_t& number = vertex_number[local];
+    if (number == std::numeric_limits<std::uint32_t>::max()) {
+      number = static_cast<std::uint32_t>(page.vertices.size());
+      page.vertices.push_back(positions[local]);
+    }
+    return number;
+  };
+  for (const RawTriangle& triangle : raw) {
+    Triangle corners{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      bool fresh = false;
+      corners[c] = edge_numbers.number(triangle.edges[c], fresh);
+      if (!fresh) continue;
+      const std::uint32_t a = vertexNumber(triangle.edges[c] >> 32);
+      page.edges.push_back({a, vertexNumber(triangle.edges[c] & 0xFFFFFFFFu)});
+    }
+    page.triangles.push_back(corners);
+    page.lifespans.push_back(triangle.life);
+  }
+  return page;
+}
+
+BuildStats buildDynamicTriangles(const hypermesh::File& mesh, Writer& writer, outofcore::Executor& executor,
+                                 outofcore::Progress& progress) {
+  BuildStats stats;
+  const std::size_t pages = mesh.geometryPages();
+  progress.phase("build", pages);
+  std::vector<BuiltPage> window(executor.threads());
+  for (std::size_t first = 0; first < pages; first += window.size()) {
+    const std::size_t count = std::min(window.size(), pages - first);
+    executor.run(count, [&](std::size_t i) {
+      const auto gathered = unwrap(mesh.gather(first + i));
+      window[i] = buildPage(gathered.view.tets, gathered.positions);
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      BuiltPage& page = window[i];
+      unwrap(writer.addPage(page.view(), page.tets, page.empty));
+      stats.pages += 1;
+      stats.tets += page.tets;
+      stats.vertices += page.vertices.size();
+      stats.edges += page.edges.size();
+      stats.triangles += page.triangles.size();
+      stats.empty += page.empty;
+      page = {};
+      progress.step(first + i + 1);
+    }
+  }
+  return stats;
+}
+
+}  // namespace tet4d::dyntri

@@ -1,0 +1,51 @@
+// Tetrahedra of a hypermesh → dynamic triangles: what the player draws. Ponchio & Hormann 2008, sec. 7.1, flat.
+//
+// Each tetrahedron, sorted by time, gives up to four triangles with half-open lifespans (formats/core/tet_slice.h); those
+// whose lifespan is empty are dropped, so an edge of constant time is never emitted. Edges are unique within a page and
+// numbered by first use in the order the triangles are drawn, vertices by first use in the order of the edges.
+//
+// Cost: one pass over the pages; O(n log n) in a page's triangles; memory of threads() pages and their results, each at
+// most bytesPerTet() a tetrahedron. The bytes do not depend on the number of threads.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formats/dynamic_triangles.h"
+#include "formats/hypermesh.h"
+#include "libpreprocess/outofcore/executor.h"
+#include "libpreprocess/outofcore/progress.h"
+
+namespace tet4d::dyntri {
+
+// One page, built in memory.
+struct BuiltPage {
+  std::vector<Vec4f> vertices;
+  std::vector<Edge> edges;
+  std::vector<Lifespan> lifespans;
+  std::vector<Triangle> triangles;
+  std::uint64_t tets = 0;   // it was made from
+  std::uint64_t empty = 0;  // triangles dropped: 4 * tets = triangles + empty
+  PageView view() const { return {vertices, edges, lifespans, triangles}; }
+};
+
+struct BuildStats {
+  std::uint64_t pages = 0, tets = 0, vertices = 0, edges = 0, triangles = 0, empty = 0;
+};
+
+// The most triangles that so many tetrahedra can give.
+constexpr std::uint64_t boundTriangles(std::uint64_t tets) { return 4 * tets; }
+
+// Working memory a tetrahedron of a page costs at most while its page is built, in bytes (all arrays together).
+constexpr std::uint64_t bytesPerTet() { return 400; }
+
+// Builds one page. tets: indices into positions; positions: index space, t in frames, finite.
+BuiltPage buildPage(std::span<const hypermesh::Tet> tets, std::span<const Vec4f> positions);
+
+// Converts a whole hypermesh, page by page in time order, into `writer` (not closed here). Phases: "build" (its pages are
+// read, built and written there). Throws Error for a damaged page.
+BuildStats buildDynamicTriangles(const hypermesh::File& mesh, Writer& writer, outofcore::Executor& executor,
+                                 outofcore::Progress& progress);
+
+}  // namespace tet4d::dyntri
