@@ -14,23 +14,25 @@ bool anySet(std::span<const std::uint64_t> reserved) {
   return std::any_of(reserved.begin(), reserved.end(), [](auto r) { return r != 0; });
 }
 
-Status checkHeader(const container::Reader& reader, const Header& h) {
-  if (h.reserved0 != 0 || anySet(h.reserved1)) return reader.fault(kHeader, "reserved bytes are not zero");
-  if (!isUsable(h.index_to_world)) return reader.fault(kHeader, "the map to world coordinates is not usable");
-  if (!page_layout::isFinite(h.bounds.min) || !page_layout::isFinite(h.bounds.max) || h.bounds.empty()) {
-    return reader.fault(kHeader, "bounds are not finite or not ordered");
-  }
-  if (!std::isfinite(h.last_time)) return reader.fault(kHeader, "the last time is not finite");
-  return {};
+// What is wrong with a header, or null.
+const char* checkHeader(const Header& h) {
+  if (h.reserved0 != 0 || anySet(h.reserved1)) return "reserved bytes are not zero";
+  if (!isUsable(h.index_to_world)) return "the map to world coordinates is not usable";
+  if (!page_layout::isProper(h.bounds)) return "the bounds are not finite or not ordered";
+  if (!std::isfinite(h.last_time)) return "the last time is not finite";
+  return nullptr;
 }
 
 // The header's sums against the page table's counts.
 Status checkSums(const container::Reader& reader, const Header& h, const paged::Pages& pages) {
+  constexpr std::array<std::size_t, 3> kBytes{sizeof(Vec4f), sizeof(Edge), sizeof(Triangle)};
   std::array<std::uint64_t, 3> sums{};
   for (const paged::PageEntry& e : pages.entries()) {
     if (e.kind != 0) return reader.fault(paged::kPageTable, "has a page of unknown kind");
+    if (e.counts[3] != 0) return reader.fault(paged::kPageTable, "has a fourth count that is not zero");
     for (std::size_t i = 0; i < 3; ++i) {
-      if (e.counts[i] > e.raw_bytes) return reader.fault(paged::kPageTable, "has a count beyond its page's size");
+      if (e.counts[i] > e.raw_bytes / kBytes[i])
+        return reader.fault(paged::kPageTable, "has a count beyond its page's size");
       sums[i] += e.counts[i];
     }
   }
@@ -56,6 +58,8 @@ const char* checkTriangles(const PageView& page) {
       begin = std::max(begin, page.vertices[page.edges[e].a].t);
       end = std::min(end, page.vertices[page.edges[e].b].t);
     }
+    const auto& [p, q, r] = page.triangles[i];
+    if (p == q || q == r || r == p) return "a triangle has an edge twice";
     const Lifespan& life = page.lifespans[i];
     if (life.begin != begin || life.end != end) return "a lifespan is not the intersection of its edges' intervals";
     if (!(begin < end)) return "a lifespan is empty";
@@ -122,7 +126,7 @@ Result<File> File::open(const std::string& path) {
   for (const std::uint32_t kind : {kHeader, kTimes}) {
     if (Status status = reader.verifySection(*reader.find(kind)); !status.ok()) return status.fault();
   }
-  if (Status status = checkHeader(reader, *file.header_); !status.ok()) return status.fault();
+  if (const char* what = checkHeader(*file.header_)) return reader.fault(kHeader, what);
   if (Status s = page_layout::checkTimes(file.times_, file.header_->frames, path); !s.ok()) return s.fault();
   auto pages = paged::Pages::open(reader);
   if (!pages.ok()) return pages.fault();
@@ -134,17 +138,32 @@ Result<File> File::open(const std::string& path) {
 Status File::verify() const {
   if (Status status = reader_->verifyAll(); !status.ok()) return status;
   if (Status status = pages_.verifyPadding(); !status.ok()) return status;
+  Bounds4f all;
   for (std::size_t k = 0; k < pages_.size(); ++k) {
     auto page = pages_.load(k);
     if (!page.ok()) return page.fault();
     auto view = validatePage(page.value().bytes(), pages_.entries()[k], reader_->path(), k);
     if (!view.ok()) return view.fault();
+    for (const Vec4f& v : view.value().vertices) all.add(v);
+    for (const Lifespan& l : view.value().lifespans) {
+      if (l.end > header_->last_time) {
+        return Fault{FaultCode::kBadInput, reader_->path(), "page " + std::to_string(k),
+                     "a lifespan ends after the file's last time", "write the file again"};
+      }
+    }
+  }
+  if (const Bounds4f box = page_layout::stored(all); box.min != header_->bounds.min || box.max != header_->bounds.max) {
+    return reader_->fault(kHeader, "its bounds are not the box of the vertices");
   }
   return {};
 }
 
 Result<Writer> Writer::create(const std::string& path, const Header& header, std::span<const double> times,
                               paged::Codec codec, bool force) {
+  Header checked = header;
+  checked.bounds = page_layout::stored({});
+  if (const char* what = checkHeader(checked)) return Fault{FaultCode::kUsage, path, "section DHDR", what, ""};
+  if (Status s = page_layout::checkTimes(times, times.size(), path); !s.ok()) return s.fault();
   auto file = container::Writer::create(path, kPayload, kVersion, force);
   if (!file.ok()) return file.fault();
   Writer writer;
@@ -159,6 +178,10 @@ Result<Writer> Writer::create(const std::string& path, const Header& header, std
 }
 
 Status Writer::addPage(const PageView& page, std::uint64_t tets, std::uint64_t empty) {
+  if (page.lifespans.size() != page.triangles.size()) {
+    return Fault{FaultCode::kUsage, "", "page " + std::to_string(pages_->entries().size()),
+                 "there must be one lifespan a triangle", ""};
+  }
   const PageHeader head{page.vertices.size(), page.edges.size(), page.triangles.size(), {}};
   page_layout::Builder builder;
   builder.add<PageHeader>({&head, 1});
@@ -187,7 +210,7 @@ Status Writer::addPage(const PageView& page, std::uint64_t tets, std::uint64_t e
 }
 
 Status Writer::close(const std::string& provenance_json) {
-  header_.bounds = bounds_.empty() ? Bounds4f{{0, 0, 0, 0}, {0, 0, 0, 0}} : bounds_;
+  header_.bounds = page_layout::stored(bounds_);
   if (Status status = pages_->end(); !status.ok()) return status;
   if (Status s = file_->add<Header>(kHeader, container::kSectionRequired, {&header_, 1}); !s.ok()) return s;
   if (Status s = file_->add<double>(kTimes, container::kSectionRequired, times_); !s.ok()) return s;

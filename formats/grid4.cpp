@@ -20,13 +20,25 @@ std::uint64_t checkedFrameBytes(const GridHeader& h) {
   return bytes;
 }
 
-Status checkHeader(const container::Reader& reader, const GridHeader& h) {
+// What is wrong with a header, or null.
+const char* checkHeader(const GridHeader& h) {
   if (h.reserved0 != 0 || std::any_of(std::begin(h.reserved1), std::end(h.reserved1), [](auto r) { return r != 0; })) {
-    return reader.fault(kHeader, "reserved bytes are not zero");
+    return "reserved bytes are not zero";
   }
-  if (checkedFrameBytes(h) == 0) return reader.fault(kHeader, "impossible grid size or sample type");
-  if (!isUsable(h.index_to_world)) return reader.fault(kHeader, "the map to world coordinates is not usable");
-  return {};
+  if (checkedFrameBytes(h) == 0) return "impossible grid size or sample type";
+  if (!isUsable(h.index_to_world)) return "the map to world coordinates is not usable";
+  return nullptr;
+}
+
+// What the page table must say of frame k, apart from where its bytes are.
+paged::PageEntry entryOf(const GridHeader& h, std::uint64_t k) {
+  paged::PageEntry entry{};
+  entry.counts[0] = k;
+  entry.counts[1] = h.dims[0] * h.dims[1] * h.dims[2];
+  const auto t = static_cast<float>(k);
+  const auto last = [&](std::size_t axis) { return static_cast<float>(h.dims[axis] - 1); };
+  entry.bounds = {{0, 0, 0, t}, {last(0), last(1), last(2), t}};
+  return entry;
 }
 
 }  // namespace
@@ -46,7 +58,7 @@ Result<File> File::open(const std::string& path) {
   for (const std::uint32_t kind : {kHeader, kTimes}) {
     if (Status status = reader.verifySection(*reader.find(kind)); !status.ok()) return status.fault();
   }
-  if (Status status = checkHeader(reader, *file.header_); !status.ok()) return status.fault();
+  if (const char* what = checkHeader(*file.header_)) return reader.fault(kHeader, what);
   if (Status s = page_layout::checkTimes(file.times_, file.header_->frames, path); !s.ok()) return s.fault();
   auto pages = paged::Pages::open(reader);
   if (!pages.ok()) return pages.fault();
@@ -54,7 +66,9 @@ Result<File> File::open(const std::string& path) {
   if (file.pages_.size() != file.header_->frames) return reader.fault(paged::kPageTable, "must have one page a frame");
   for (std::size_t k = 0; k < file.pages_.size(); ++k) {
     const paged::PageEntry& e = file.pages_.entries()[k];
-    if (e.raw_bytes != file.frameBytes() || e.kind != 0 || e.counts[0] != k) {
+    const paged::PageEntry expected = entryOf(*file.header_, k);
+    if (e.raw_bytes != file.frameBytes() || e.kind != 0 || !std::ranges::equal(e.counts, expected.counts) ||
+        e.bounds.min != expected.bounds.min || e.bounds.max != expected.bounds.max) {
       return reader.fault(paged::kPageTable, "page " + std::to_string(k) + " is not frame " + std::to_string(k));
     }
   }
@@ -72,6 +86,9 @@ Status File::verify() const {
 
 Result<Writer> Writer::create(const std::string& path, const GridHeader& header, std::span<const double> times,
                               paged::Codec codec, bool force) {
+  const auto unfit = [&](const char* what) { return Fault{FaultCode::kUsage, path, "section GHDR", what, ""}; };
+  if (const char* what = checkHeader(header)) return unfit(what);
+  if (Status s = page_layout::checkTimes(times, times.size(), path); !s.ok()) return s.fault();
   auto file = container::Writer::create(path, kPayload, kVersion, force);
   if (!file.ok()) return file.fault();
   Writer writer;
@@ -85,20 +102,22 @@ Result<Writer> Writer::create(const std::string& path, const GridHeader& header,
 }
 
 Status Writer::addFrame(std::span<const std::byte> samples) {
-  assert(samples.size() == checkedFrameBytes(header_));
-  paged::PageEntry entry{};
-  entry.counts[0] = pages_->entries().size();
-  entry.counts[1] = header_.dims[0] * header_.dims[1] * header_.dims[2];
-  const auto t = static_cast<float>(entry.counts[0]);
-  const auto last = [&](std::size_t axis) { return static_cast<float>(header_.dims[axis] - 1); };
-  entry.bounds = {{0, 0, 0, t}, {last(0), last(1), last(2), t}};
-  entry.error_estimated = 0;
-  entry.error_measured = 0;
-  return pages_->add(samples, entry);
+  const std::size_t k = pages_->entries().size();
+  if (k == times_.size() || samples.size() != checkedFrameBytes(header_)) {
+    return Fault{FaultCode::kUsage, "", "frame " + std::to_string(k),
+                 std::to_string(samples.size()) + " bytes, expected " + std::to_string(checkedFrameBytes(header_)) +
+                     " for each of " + std::to_string(times_.size()) + " frames",
+                 ""};
+  }
+  return pages_->add(samples, entryOf(header_, k));
 }
 
 Status Writer::close(const std::string& provenance_json) {
-  assert(pages_->entries().size() == times_.size());
+  if (pages_->entries().size() != times_.size()) {
+    return Fault{FaultCode::kUsage, "", "section TIME",
+                 std::to_string(pages_->entries().size()) + " frames for " + std::to_string(times_.size()) + " times",
+                 "give one time a frame"};
+  }
   if (Status status = pages_->end(); !status.ok()) return status;
   if (Status s = file_->add<GridHeader>(kHeader, container::kSectionRequired, {&header_, 1}); !s.ok()) return s;
   if (Status s = file_->add<double>(kTimes, container::kSectionRequired, times_); !s.ok()) return s;

@@ -14,18 +14,15 @@ bool anySet(std::span<const std::uint64_t> reserved) {
   return std::any_of(reserved.begin(), reserved.end(), [](auto r) { return r != 0; });
 }
 
-bool boxOk(const Bounds4f& box) {
-  return page_layout::isFinite(box.min) && page_layout::isFinite(box.max) && !box.empty();
-}
-
-Status checkHeader(const container::Reader& reader, const MeshHeader& h) {
-  if (anySet(h.reserved)) return reader.fault(kHeader, "reserved bytes are not zero");
-  if ((h.flags & ~(kOnGrid | kInnerBoundary)) != 0) return reader.fault(kHeader, "unknown flags");
-  if (!isUsable(h.index_to_world)) return reader.fault(kHeader, "the map to world coordinates is not usable");
-  if (!boxOk(h.domain) || !boxOk(h.bounds))
-    return reader.fault(kHeader, "domain or bounds are not finite or not ordered");
-  if (std::isinf(h.isovalue)) return reader.fault(kHeader, "the isovalue is infinite");
-  return {};
+// What is wrong with a header, or null.
+const char* checkHeader(const MeshHeader& h) {
+  if (anySet(h.reserved)) return "reserved bytes are not zero";
+  if ((h.flags & ~(kOnGrid | kInnerBoundary)) != 0) return "unknown flags";
+  if (!isUsable(h.index_to_world)) return "the map to world coordinates is not usable";
+  if (!page_layout::isProper(h.domain)) return "the domain is not finite or not ordered";
+  if (!page_layout::isProper(h.bounds)) return "the bounds are not finite or not ordered";
+  if (std::isinf(h.isovalue)) return "the isovalue is infinite";
+  return nullptr;
 }
 
 // A page is never empty, so that of a column without vertices is one part of zeros.
@@ -33,15 +30,21 @@ std::uint64_t columnBytes(std::uint64_t bytes) {
   return std::max<std::uint64_t>(page_layout::padded(bytes), page_layout::kPartAlignment);
 }
 
-Status checkColumns(const container::Reader& reader, const MeshHeader& h, std::span<const ColumnEntry> columns) {
-  if (columns.size() != h.columns) return reader.fault(kColumns, "has another number of columns than the header");
+// What is wrong with the columns, or null.
+const char* checkColumns(std::span<const ColumnEntry> columns) {
+  std::vector<std::string_view> names;
   for (const ColumnEntry& c : columns) {
     const std::size_t length = strnlen(c.name, sizeof c.name);
     const bool padded = std::all_of(c.name + length, c.name + sizeof c.name, [](char ch) { return ch == 0; });
-    if (length == 0 || length == sizeof c.name || !padded) return reader.fault(kColumns, "a column has no proper name");
-    if (c.components < 1 || c.components > 4 || c.reserved != 0) return reader.fault(kColumns, "impossible components");
+    if (length == 0 || length == sizeof c.name || !padded)
+      return "a column's name is empty, too long or not zero-padded";
+    if (c.components < 1 || c.components > 4) return "a column has impossible components";
+    if (c.reserved != 0) return "reserved bytes are not zero";
+    names.emplace_back(c.name, length);
   }
-  return {};
+  std::sort(names.begin(), names.end());
+  if (std::adjacent_find(names.begin(), names.end()) != names.end()) return "two columns have the same name";
+  return nullptr;
 }
 
 // Every geometry page, in the order of its vertices, then its column pages.
@@ -53,6 +56,7 @@ Status checkPages(const container::Reader& reader, const MeshHeader& h, std::spa
   const std::size_t stride = 1 + columns.size();
   if (pages.size() % stride != 0) return bad(pages.size(), "is missing");
   std::uint64_t vertices = 0, tets = 0;
+  float begin = -std::numeric_limits<float>::infinity();  // of the slab before
   for (std::size_t i = 0; i < pages.size(); ++i) {
     if (pages[i].kind != i % stride) return bad(i, "is not of the kind expected there");
     const auto& counts = pages[i - i % stride].counts;
@@ -62,12 +66,15 @@ Status checkPages(const container::Reader& reader, const MeshHeader& h, std::spa
       continue;
     }
     if (counts[0] != vertices) return bad(i, "does not continue the vertex numbers");
-    if (counts[1] > pages[i].raw_bytes || counts[2] > pages[i].raw_bytes || counts[3] > h.vertices) {
+    if (counts[1] > pages[i].raw_bytes / sizeof(Vec4f) || counts[2] > pages[i].raw_bytes / sizeof(Tet) ||
+        counts[3] > h.vertices) {
       return bad(i, "has a count beyond its size");
     }
     if (counts[3] > (std::uint64_t{1} << 32) - std::min(counts[1], std::uint64_t{1} << 32)) {
       return bad(i, "has more vertices than local indices can name");
     }
+    if (counts[2] != 0 && pages[i].bounds.min.t < begin) return bad(i, "begins before the slab in front of it");
+    if (counts[2] != 0) begin = pages[i].bounds.min.t;
     vertices += counts[1];
     tets += counts[2];
   }
@@ -77,15 +84,17 @@ Status checkPages(const container::Reader& reader, const MeshHeader& h, std::spa
 }
 
 const char* checkRuns(const PageView& page, std::uint64_t total_vertices) {
-  std::uint64_t foreign = 0;
+  std::uint64_t foreign = 0, end = 0;
   const std::uint64_t own_begin = page.header->first_vertex, own_end = own_begin + page.header->owned;
   for (const Run& run : page.runs) {
     if (run.count == 0 || run.first > total_vertices || run.count > total_vertices - run.first) {
       return "a run of foreign vertices is empty or out of range";
     }
     if (run.first < own_end && own_begin < run.first + run.count) return "a run of foreign vertices holds its own";
+    // In order, so that an owner's page is loaded once however many runs there are.
+    if (run.first < end) return "a run of foreign vertices overlaps the one before or stands out of order";
+    end = run.first + run.count;
     foreign += run.count;
-    if (foreign > total_vertices) return "its runs hold more vertices than there are";
   }
   return foreign == page.header->foreign ? nullptr : "its runs do not sum to its foreign vertices";
 }
@@ -132,6 +141,8 @@ Result<PageView> validatePage(std::span<const std::byte> bytes, const paged::Pag
     for (const std::uint32_t i : tet) {
       if (i >= locals) return bad("a tetrahedron's vertex is out of range");
     }
+    const auto& [a, b, c, d] = tet;
+    if (a == b || a == c || a == d || b == c || b == d || c == d) return bad("a tetrahedron has a vertex twice");
   }
   return view;
 }
@@ -157,9 +168,13 @@ Result<File> File::open(const std::string& path) {
   for (const std::uint32_t kind : {kHeader, kTimes}) {
     if (Status status = reader.verifySection(*reader.find(kind)); !status.ok()) return status.fault();
   }
-  if (Status s = checkHeader(reader, *file.header_); !s.ok()) return s.fault();
+  if (const char* what = checkHeader(*file.header_)) return reader.fault(kHeader, what);
   if (Status s = page_layout::checkTimes(file.times_, file.header_->frames, path); !s.ok()) return s.fault();
-  if (Status s = checkColumns(reader, *file.header_, file.columns_); !s.ok()) return s.fault();
+  if (file.columns_.size() != file.header_->columns) {
+    return reader.fault(kColumns, "has " + std::to_string(file.columns_.size()) + " columns, the header says " +
+                                      std::to_string(file.header_->columns));
+  }
+  if (const char* what = checkColumns(file.columns_)) return reader.fault(kColumns, what);
   auto pages = paged::Pages::open(reader);
   if (!pages.ok()) return pages.fault();
   file.pages_ = pages.value();
@@ -170,7 +185,7 @@ Result<File> File::open(const std::string& path) {
 Result<paged::PageBytes> File::loadPage(std::size_t k, PageView& view) const {
   auto bytes = pages_.load(k * stride());
   if (!bytes.ok()) return bytes.fault();
-  auto valid = validatePage(bytes.value().bytes(), geometryEntry(k), *header_, reader_->path(), k);
+  auto valid = validatePage(bytes.value().bytes(), geometryEntry(k), *header_, reader_->path(), k * stride());
   if (!valid.ok()) return valid.fault();
   view = valid.value();
   return bytes;
@@ -181,7 +196,6 @@ Result<GatheredPage> File::gather(std::size_t k) const {
   auto bytes = loadPage(k, page.view);
   if (!bytes.ok()) return bytes.fault();
   page.bytes = std::move(bytes).value();
-  page.positions.reserve(page.view.header->owned + page.view.header->foreign);
   page.positions.assign(page.view.vertices.begin(), page.view.vertices.end());
   // The geometry page that owns a global vertex: the last that begins at or before it and owns any.
   const auto ownerOf = [&](std::uint64_t vertex) {
@@ -192,13 +206,18 @@ Result<GatheredPage> File::gather(std::size_t k) const {
     }
     return low;
   };
+  std::size_t owner = geometryPages();  // whose page owner_bytes is
+  paged::PageBytes owner_bytes;
+  PageView owner_view;
   for (const Run& run : page.view.runs) {
     // A run may span several owners; the vertex numbers grow with the pages.
     for (std::uint64_t at = run.first; at < run.first + run.count;) {
-      const std::size_t owner = ownerOf(at);
-      PageView owner_view;
-      auto owner_bytes = loadPage(owner, owner_view);
-      if (!owner_bytes.ok()) return owner_bytes.fault();
+      if (const std::size_t wanted = ownerOf(at); wanted != owner) {
+        auto loaded = loadPage(wanted, owner_view);
+        if (!loaded.ok()) return loaded.fault();
+        owner_bytes = std::move(loaded).value();
+        owner = wanted;
+      }
       const std::uint64_t first = owner_view.header->first_vertex;
       const std::uint64_t end = std::min(run.first + run.count, first + owner_view.header->owned);
       const auto part = owner_view.vertices.subspan(at - first, end - at);
@@ -209,6 +228,15 @@ Result<GatheredPage> File::gather(std::size_t k) const {
   return page;
 }
 
+Result<std::uint64_t> File::contentDigest() const {
+  auto pages = pages_.contentDigest();
+  if (!pages.ok()) return pages.fault();
+  const std::array<std::uint64_t, 4> parts{container::xxh3(std::as_bytes(std::span(header_, 1))),
+                                           container::xxh3(std::as_bytes(times_)),
+                                           container::xxh3(std::as_bytes(columns_)), pages.value()};
+  return container::xxh3(std::as_bytes(std::span(parts)));
+}
+
 Result<paged::PageBytes> File::loadColumn(std::size_t c, std::size_t k) const {
   return pages_.load(k * stride() + 1 + c);
 }
@@ -216,16 +244,18 @@ Result<paged::PageBytes> File::loadColumn(std::size_t c, std::size_t k) const {
 Status File::verify() const {
   if (Status status = reader_->verifyAll(); !status.ok()) return status;
   if (Status status = pages_.verifyPadding(); !status.ok()) return status;
+  Bounds4f all;
   for (std::size_t k = 0; k < geometryPages(); ++k) {
     auto page = gather(k);
     if (!page.ok()) return page.fault();
+    for (const Vec4f& v : page.value().view.vertices) all.add(v);
     const Bounds4f& box = geometryEntry(k).bounds;
     for (const Tet& tet : page.value().view.tets) {
       for (const std::uint32_t i : tet) {
         Bounds4f with = box;
         with.add(page.value().positions[i]);
         if (with.min != box.min || with.max != box.max) {
-          return Fault{FaultCode::kBadInput, reader_->path(), "page " + std::to_string(k),
+          return Fault{FaultCode::kBadInput, reader_->path(), "page " + std::to_string(k * stride()),
                        "a vertex lies outside the page's bounds", "write the file again"};
         }
       }
@@ -233,13 +263,33 @@ Status File::verify() const {
   }
   for (std::size_t i = 0; i < pages_.size(); ++i) {
     if (i % stride() == 0) continue;
-    if (auto page = pages_.load(i); !page.ok()) return page.fault();
+    auto page = pages_.load(i);
+    if (!page.ok()) return page.fault();
+    const auto& entry = pages_.entries()[i - i % stride()];
+    const std::uint64_t used = entry.counts[1] * columns_[i % stride() - 1].components * sizeof(float);
+    if (!page_layout::allZero(page.value().bytes().subspan(used))) {
+      return Fault{FaultCode::kBadInput, reader_->path(), "page " + std::to_string(i), "padding is not zero",
+                   "write the file again"};
+    }
+  }
+  if (const Bounds4f box = page_layout::stored(all); box.min != header_->bounds.min || box.max != header_->bounds.max) {
+    return reader_->fault(kHeader, "its bounds are not the box of the vertices");
   }
   return {};
 }
 
 Result<Writer> Writer::create(const std::string& path, const MeshHeader& header, std::span<const double> times,
                               std::span<const Column> columns, paged::Codec codec, bool force) {
+  MeshHeader checked = header;
+  checked.bounds = page_layout::stored({});
+  if (const char* what = checkHeader(checked)) return Fault{FaultCode::kUsage, path, "section HHDR", what, ""};
+  if (Status s = page_layout::checkTimes(times, times.size(), path); !s.ok()) return s.fault();
+  std::vector<ColumnEntry> entries(columns.size());
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    columns[c].name.copy(entries[c].name, sizeof entries[c].name);
+    entries[c].components = columns[c].components;
+  }
+  if (const char* what = checkColumns(entries)) return Fault{FaultCode::kUsage, path, "section COLS", what, ""};
   auto file = container::Writer::create(path, kPayload, kVersion, force);
   if (!file.ok()) return file.fault();
   Writer writer;
@@ -249,14 +299,19 @@ Result<Writer> Writer::create(const std::string& path, const MeshHeader& header,
   writer.header_.frames = times.size();
   writer.header_.columns = static_cast<std::uint32_t>(columns.size());
   writer.times_.assign(times.begin(), times.end());
-  writer.columns_.assign(columns.begin(), columns.end());
+  writer.columns_ = std::move(entries);
   if (Status status = writer.pages_->begin(); !status.ok()) return status.fault();
   return writer;
 }
 
 Status Writer::addPage(std::span<const Vec4f> vertices, std::span<const Run> runs, std::span<const Tet> tets,
                        const Bounds4f& bounds, std::span<const std::span<const float>> columns) {
-  assert(columns.size() == columns_.size());
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    if (columns.size() != columns_.size() || columns[c].size() != vertices.size() * columns_[c].components) {
+      return Fault{FaultCode::kUsage, "", "page " + std::to_string(pages_->entries().size()),
+                   "the columns do not fit the vertices", ""};
+    }
+  }
   PageHeader head{};
   head.first_vertex = next_vertex_;
   head.owned = vertices.size();
@@ -279,10 +334,10 @@ Status Writer::addPage(std::span<const Vec4f> vertices, std::span<const Run> run
   next_vertex_ += head.owned;
   tets_ += head.tets;
   if (Status status = pages_->add(builder.bytes(), entry); !status.ok()) return status;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    assert(columns[c].size() == vertices.size() * columns_[c].components);
-    std::vector<std::byte> bytes(columnBytes(columns[c].size_bytes()));
-    std::memcpy(bytes.data(), columns[c].data(), columns[c].size_bytes());
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    const auto values = std::as_bytes(columns[c]);
+    std::vector<std::byte> bytes(columnBytes(values.size()));
+    std::copy(values.begin(), values.end(), bytes.begin());
     entry.kind = static_cast<std::uint32_t>(1 + c);
     if (Status status = pages_->add(bytes, entry); !status.ok()) return status;
   }
@@ -293,16 +348,11 @@ Status Writer::close(const std::string& provenance_json) {
   if (Status status = pages_->end(); !status.ok()) return status;
   header_.vertices = next_vertex_;
   header_.tets = tets_;
-  header_.bounds = bounds_.empty() ? Bounds4f{{0, 0, 0, 0}, {0, 0, 0, 0}} : bounds_;
+  header_.bounds = page_layout::stored(bounds_);
   if (Status s = file_->add<MeshHeader>(kHeader, container::kSectionRequired, {&header_, 1}); !s.ok()) return s;
   if (Status s = file_->add<double>(kTimes, container::kSectionRequired, times_); !s.ok()) return s;
   if (!columns_.empty()) {
-    std::vector<ColumnEntry> entries(columns_.size());
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      columns_[c].name.copy(entries[c].name, sizeof entries[c].name - 1);
-      entries[c].components = columns_[c].components;
-    }
-    if (Status s = file_->add<ColumnEntry>(kColumns, 0, entries); !s.ok()) return s;
+    if (Status s = file_->add<ColumnEntry>(kColumns, container::kSectionRequired, columns_); !s.ok()) return s;
   }
   if (Status s = file_->add<char>(container::kProvenance, 0, provenance_json); !s.ok()) return s;
   return file_->close();

@@ -70,7 +70,7 @@ static_assert(sizeof(PageHeader) == 64);
 
 struct Run {
   std::uint64_t first;  // @0 global vertex number
-  std::uint64_t count;  // @8 at least 1
+  std::uint64_t count;  // @8 at least 1; runs ascend and do not overlap
 };
 static_assert(sizeof(Run) == 16);
 
@@ -109,6 +109,8 @@ class File {
   // Geometry pages, in time order; they are every (1 + columns)-th page of the page table.
   std::size_t geometryPages() const { return pages_.size() / stride(); }
   const paged::PageEntry& geometryEntry(std::size_t k) const { return pages_.entries()[k * stride()]; }
+  // A digest of what the file says (header, times, columns' names, decoded pages), the same for every codec and layout.
+  Result<std::uint64_t> contentDigest() const;
   // Loads and proves geometry page k and gathers its foreign vertices from the pages that own them. O(page + owners).
   Result<GatheredPage> gather(std::size_t k) const;
   // Column c of geometry page k: components * owned floats.
@@ -150,7 +152,7 @@ class Writer {
   std::unique_ptr<paged::PageWriter> pages_;
   MeshHeader header_{};
   std::vector<double> times_;
-  std::vector<Column> columns_;
+  std::vector<ColumnEntry> columns_;
   std::uint64_t next_vertex_ = 0, tets_ = 0;
   Bounds4f bounds_;
 };

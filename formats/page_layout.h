@@ -21,6 +21,10 @@ constexpr std::uint64_t padded(std::uint64_t bytes) {
   return (bytes + kPartAlignment - 1) / kPartAlignment * kPartAlignment;
 }
 
+inline bool allZero(std::span<const std::byte> bytes) {
+  return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
+}
+
 // Appends the parts of a page to one buffer.
 class Builder {
  public:
@@ -48,7 +52,7 @@ class Parser {
     if (!ok_ || count > left / sizeof(T) || padded(count * sizeof(T)) > left) return fail<T>();
     const std::span<const T> items(reinterpret_cast<const T*>(bytes_.data() + at_), count);
     const auto gap = bytes_.subspan(at_ + count * sizeof(T), padded(count * sizeof(T)) - count * sizeof(T));
-    if (!std::all_of(gap.begin(), gap.end(), [](std::byte b) { return b == std::byte{0}; })) return fail<T>();
+    if (!allZero(gap)) return fail<T>();
     at_ += padded(count * sizeof(T));
     return items;
   }
@@ -69,6 +73,12 @@ class Parser {
 inline bool isFinite(const Vec4f& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(p.t);
 }
+
+// A box as files may hold it.
+inline bool isProper(const Bounds4f& box) { return isFinite(box.min) && isFinite(box.max) && !box.empty(); }
+
+// A box as files hold it: all zero if it is empty.
+inline Bounds4f stored(const Bounds4f& box) { return box.empty() ? Bounds4f{{0, 0, 0, 0}, {0, 0, 0, 0}} : box; }
 
 // The timeline every payload has: at least one time, finite, strictly increasing.
 inline Status checkTimes(std::span<const double> times, std::uint64_t frames, const std::string& file) {
