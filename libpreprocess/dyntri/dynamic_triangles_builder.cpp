@@ -2,6 +2,7 @@
 #include "libpreprocess/dyntri/dynamic_triangles_builder.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -102,12 +103,32 @@ BuiltPage buildPage(std::span<const hypermesh::Tet> tets, std::span<const Vec4f>
   return page;
 }
 
+std::uint64_t boundPageMemory(std::uint64_t tets, std::uint64_t vertices) {
+  // Raw triangles and the buffer of the stable sort, edge keys, numbers, the page itself and its encoded copy.
+  const std::uint64_t per_triangle = 2 * sizeof(RawTriangle) + 3 * (sizeof(EdgeKey) + 4) + 2 * (3 * 8 + 8 + 12);
+  return boundTriangles(tets) * per_triangle + vertices * (2 * sizeof(Vec4f) + 4) + tets * sizeof(hypermesh::Tet);
+}
+
+std::uint64_t boundBuildMemory(const hypermesh::File& mesh, std::size_t pages_in_flight) {
+  std::vector<std::uint64_t> pages;
+  for (std::size_t k = 0; k < mesh.geometryPages(); ++k) {
+    const auto& counts = mesh.geometryEntry(k).counts;
+    pages.push_back(boundPageMemory(counts[2], counts[1] + counts[3]));
+  }
+  const auto n = static_cast<std::ptrdiff_t>(std::min(pages_in_flight, pages.size()));
+  std::partial_sort(pages.begin(), pages.begin() + n, pages.end(), std::greater<>());
+  return std::accumulate(pages.begin(), pages.begin() + n, std::uint64_t{0});
+}
+
 BuildStats buildDynamicTriangles(const hypermesh::File& mesh, Writer& writer, outofcore::Executor& executor,
-                                 outofcore::Progress& progress) {
+                                 outofcore::MemoryBudget& memory, outofcore::Progress& progress) {
   BuildStats stats;
   const std::size_t pages = mesh.geometryPages();
+  std::size_t in_flight = executor.threads();
+  while (in_flight > 1 && boundBuildMemory(mesh, in_flight) > memory.available()) --in_flight;
+  const auto reserved = memory.reserve(boundBuildMemory(mesh, in_flight), "building the largest pages");
   progress.phase("build", pages);
-  std::vector<BuiltPage> window(executor.threads());
+  std::vector<BuiltPage> window(in_flight);
   for (std::size_t first = 0; first < pages; first += window.size()) {
     const std::size_t count = std::min(window.size(), pages - first);
     executor.run(count, [&](std::size_t i) {

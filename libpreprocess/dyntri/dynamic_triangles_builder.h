@@ -1,11 +1,11 @@
 // Tetrahedra of a hypermesh → dynamic triangles: what the player draws. Ponchio & Hormann 2008, sec. 7.1, flat.
 //
-// Each tetrahedron, sorted by time, gives up to four triangles with half-open lifespans (formats/core/tet_slice.h); those
-// whose lifespan is empty are dropped, so an edge of constant time is never emitted. Edges are unique within a page and
-// numbered by first use in the order the triangles are drawn, vertices by first use in the order of the edges.
+// Each tetrahedron, sorted by time, gives up to four triangles with half-open lifespans (formats/core/tet_slice.h);
+// those whose lifespan is empty are dropped, so an edge of constant time is never emitted. Edges are unique within a
+// page and numbered by first use in the order the triangles are drawn, vertices by first use in the order of the edges.
 //
-// Cost: one pass over the pages; O(n log n) in a page's triangles; memory of threads() pages and their results, each at
-// most bytesPerTet() a tetrahedron. The bytes do not depend on the number of threads.
+// Cost: one pass over the pages; O(n log n) in a page's triangles; memory of as many pages as there are threads, fewer
+// if the budget says so, at least one. The bytes depend on neither.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include "formats/dynamic_triangles.h"
 #include "formats/hypermesh.h"
 #include "libpreprocess/outofcore/executor.h"
+#include "libpreprocess/outofcore/memory_budget.h"
 #include "libpreprocess/outofcore/progress.h"
 
 namespace tet4d::dyntri {
@@ -37,15 +38,18 @@ struct BuildStats {
 // The most triangles that so many tetrahedra can give.
 constexpr std::uint64_t boundTriangles(std::uint64_t tets) { return 4 * tets; }
 
-// Working memory a tetrahedron of a page costs at most while its page is built, in bytes (all arrays together).
-constexpr std::uint64_t bytesPerTet() { return 400; }
+// Bytes held at most while a page of so many tetrahedra and vertices is built (all arrays together).
+std::uint64_t boundPageMemory(std::uint64_t tets, std::uint64_t vertices);
 
 // Builds one page. tets: indices into positions; positions: index space, t in frames, finite.
 BuiltPage buildPage(std::span<const hypermesh::Tet> tets, std::span<const Vec4f> positions);
 
-// Converts a whole hypermesh, page by page in time order, into `writer` (not closed here). Phases: "build" (its pages are
-// read, built and written there). Throws Error for a damaged page.
+// Bytes that building `mesh` on so many threads reserves: of its largest pages, as many as are in flight.
+std::uint64_t boundBuildMemory(const hypermesh::File& mesh, std::size_t pages_in_flight);
+
+// Converts a whole hypermesh, page by page in time order, into `writer` (not closed here). Phase: "build" (pages are
+// read, built and written in it). Throws Error for a damaged page, kOutOfMemory if not even one page fits the budget.
 BuildStats buildDynamicTriangles(const hypermesh::File& mesh, Writer& writer, outofcore::Executor& executor,
-                                 outofcore::Progress& progress);
+                                 outofcore::MemoryBudget& memory, outofcore::Progress& progress);
 
 }  // namespace tet4d::dyntri
