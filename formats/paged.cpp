@@ -133,6 +133,21 @@ Result<PageBytes> Pages::load(std::size_t i) const {
 #endif
 }
 
+Result<std::uint64_t> Pages::contentDigest() const {
+  std::vector<std::uint64_t> digests;
+  digests.reserve(entries_.size());
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].codec == static_cast<std::uint32_t>(Codec::kRaw)) {
+      digests.push_back(entries_[i].xxh3);
+      continue;
+    }
+    auto page = load(i);
+    if (!page.ok()) return page.fault();
+    digests.push_back(container::xxh3(page.value().bytes()));
+  }
+  return container::xxh3(std::as_bytes(std::span(digests)));
+}
+
 Status Pages::verifyPadding() const {
   const container::SectionEntry& section = *reader_->find(kPages);
   std::uint64_t end = section.offset;

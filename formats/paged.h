@@ -65,6 +65,9 @@ class Pages {
   std::size_t size() const { return entries_.size(); }
   // Checks and decodes page i. O(its bytes). Fault names the page. Thread-safe.
   Result<PageBytes> load(std::size_t i) const;
+  // A digest of the decoded pages in order, the same for every codec. Raw pages cost nothing (their checksum stands in
+  // the table), others are decoded. O(compressed pages).
+  Result<std::uint64_t> contentDigest() const;
   // Checks that the gaps between pages are zero. O(gaps).
   Status verifyPadding() const;
 
