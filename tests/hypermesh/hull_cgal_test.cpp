@@ -1,4 +1,4 @@
-// The hull's facets against CGAL's exact four-dimensional convex hull.
+// The facets of all configurations against CGAL's exact four-dimensional convex hull (about 5 s).
 #include <CGAL/Epick_d.h>
 #include <CGAL/Triangulation.h>
 #include <gtest/gtest.h>
@@ -85,13 +85,13 @@ std::map<Point, std::uint32_t> exactFacets(unsigned configuration) {
 TEST(HullFacets, EqualCgalsExactHull) {
   const auto all = allHullFacets();
   std::size_t compared = 0;
-  for (unsigned c = TET4D_CGAL_FIRST; c < kConfigurations; c += TET4D_CGAL_STRIDE) {
+  for (unsigned c = 1; c < kConfigurations; ++c) {
     std::map<Point, std::uint32_t> ours;
     for (const HullFacet& f : all[c]) ours[{f.normal[0], f.normal[1], f.normal[2], f.normal[3]}] = f.edges;
     ASSERT_EQ(ours, exactFacets(c)) << "configuration " << c;
     compared += ours.size();
   }
-  EXPECT_GT(compared, 0U);
+  EXPECT_EQ(compared, 484'928U);
 }
 
 }  // namespace
