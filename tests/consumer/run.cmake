@@ -1,0 +1,26 @@
+# Installs BUILD_DIR under a fresh prefix, builds CONSUMER_DIR against it and runs the result.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE out)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "${ARGN}\nended with ${code}:\n${out}")
+  endif()
+endfunction()
+
+set(prefix ${WORK_DIR}/prefix)
+file(REMOVE_RECURSE ${WORK_DIR})
+run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
+# Another place than the one it was installed to: an exported package has to move.
+file(RENAME ${prefix} ${WORK_DIR}/moved)
+run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/build -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
+    -DCMAKE_BUILD_TYPE=${BUILD_TYPE} -DCMAKE_PREFIX_PATH=${WORK_DIR}/moved)
+run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
+run(${WORK_DIR}/build/consumer ${WORK_DIR}/consumer.t4h)
+foreach(program tet4d-mc tet4d-convert tet4d-info dyntri-build tet4d-play)
+  if(NOT EXISTS ${WORK_DIR}/moved/bin/${program})
+    message(FATAL_ERROR "${program} was not installed in bin/")
+  endif()
+endforeach()
+file(GLOB pipelines ${WORK_DIR}/moved/share/tet4d/pipelines/*.mk)
+if(NOT pipelines)
+  message(FATAL_ERROR "no pipeline was installed in share/tet4d/pipelines")
+endif()
