@@ -26,7 +26,6 @@
 #include <functional>
 #include <initializer_list>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -96,6 +95,8 @@ struct Example {
 class Command {
  public:
   Command(std::string program, std::string summary);
+  Command(const Command&) = delete;  // its options point into it
+  Command& operator=(const Command&) = delete;
 
   // Shown first in --help, in this order.
   Command& example(std::string command, std::string meaning);
@@ -109,8 +110,6 @@ class Command {
   Command& common(std::initializer_list<Common> which);
   // A line shown at the end of --help.
   Command& note(std::string text);
-  // Says false for outputs run() must not check beforehand (a pattern like %05d.png, a name that stands for two files).
-  Command& checkOutput(std::function<bool(const std::string&)> should_check);
 
   const std::string& program() const { return program_; }
   const std::string& summary() const { return summary_; }
@@ -119,25 +118,30 @@ class Command {
   const std::vector<std::string>& notes() const { return notes_; }
   CommonOptions& commonOptions() { return common_; }
   const CommonOptions& commonOptions() const { return common_; }
-  bool wantsOutputCheck() const;
+
+  // Adds what every program has; parse() and helpText() need it, and run() calls it.
+  void addUniversal();
+  bool wantsHelp() const { return wants_help_; }
+  bool wantsVersion() const { return wants_version_; }
 
  private:
   std::string program_, summary_, heading_ = "Options";
   std::vector<Example> examples_;
   std::vector<Option> options_;
   std::vector<std::string> notes_;
-  std::function<bool(const std::string&)> should_check_;
   CommonOptions common_;
+  bool has_universal_ = false, wants_help_ = false, wants_version_ = false;
 };
 
 // What parse() found to do.
 enum class Parsed { kRun, kHelp, kVersion };
 
-// Parses into the bindings. Throws Error{kUsage} with the nearest option or word in the remedy; Error{kIo} for a
+// Parses into the bindings, adding the universal options first. Throws Error{kUsage} with the nearest option or word in
+// the remedy; Error{kIo} for a
 // --config file that cannot be read.
 Parsed parse(int argc, const char* const* argv, Command& command);
 
-// The text of --help.
+// The text of --help. Made from the option table as it stands before parsing: defaults are read from the bindings.
 std::string helpText(const Command& command);
 
 // The whole of main(): parses, runs `body` and returns its exit code (0, or 5 when a validation found faults), or

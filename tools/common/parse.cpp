@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <fstream>
+
+#include "libpreprocess/error.h"
+#include "tools/common/bindings.h"
+#include "tools/common/cli.h"
+
+namespace tet4d::cli {
+
+namespace {
+
+[[noreturn]] void fail(std::string place, std::string what, std::string remedy = "see --help") {
+  throw Error(FaultCode::kUsage, {}, std::move(place), std::move(what), std::move(remedy));
+}
+
+// How messages name an option: "--iso", or the positional's own name.
+std::string shownName(const Option& option) { return option.positional ? option.flags : "--" + option.name(); }
+
+// Declares the table to CLI11. Texts are only collected: conversion is ours, so that messages name what was meant.
+std::vector<CLI::Option*> declare(CLI::App& app, const Command& command) {
+  std::vector<CLI::Option*> declared;
+  for (const Option& option : command.options()) {
+    if (option.value_name.empty() && !option.positional) {
+      declared.push_back(app.add_flag(option.flags));
+      continue;
+    }
+    const auto collect = [](const CLI::results_t&) { return true; };
+    CLI::Option* one = app.add_option(option.flags, collect)->type_name(option.value_name);
+    if (!takesMany(option.binding)) {
+      one->expected(1);
+    } else if (option.positional) {
+      one->expected(-1);
+    } else {
+      one->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
+    }
+    if (option.positional) one->configurable(false);
+    declared.push_back(one);
+  }
+  return declared;
+}
+
+// Every spelling of every option, with its dashes.
+std::vector<std::string> spellings(const Command& command) {
+  std::vector<std::string> all;
+  for (const Option& option : command.options()) {
+    if (!option.positional) all.push_back("--" + option.name());
+  }
+  return all;
+}
+
+[[noreturn]] void failUnknown(const Command& command, const std::string& argument) {
+  if (!argument.starts_with('-') || argument == "-") fail(fmt::format("'{}'", argument), "is one argument too many");
+  const std::string word = argument.substr(0, argument.find('='));
+  // A word after one dash is taken for a long option that lost the other.
+  const bool lost_dash = !word.starts_with("--") && word.size() > 2;
+  const std::string meant = nearest(lost_dash ? "-" + word : word, spellings(command));
+  fail(word, "there is no such option", meant.empty() ? "see --help" : fmt::format("did you mean {}?", meant));
+}
+
+void requireReadable(const std::string& config) {
+  if (config.empty()) return;
+  if (!std::ifstream(config))
+    throw Error(FaultCode::kIo, config, {}, "cannot be read", "check the name given to --config");
+}
+
+void parseInto(CLI::App& app, CLI::Option* config, int argc, const char* const* argv, const Command& command) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::FileError&) {
+    requireReadable(config->empty() ? std::string() : config->results().back());
+    fail("--config", "is not a readable file");
+  } catch (const CLI::ConfigError& error) {
+    // CLI11 names the entry last in its message.
+    const std::string text = error.what();
+    const std::string word = text.substr(text.find_last_of(' ') + 1);
+    const std::string meant = nearest("--" + word, spellings(command));
+    fail("--config", text, meant.empty() ? "see --help" : fmt::format("did you mean {}?", meant.substr(2)));
+  } catch (const CLI::ParseError& error) {
+    fail({}, error.what());
+  }
+}
+
+}  // namespace
+
+Parsed parse(int argc, const char* const* argv, Command& command) {
+  command.addUniversal();
+  CLI::App app;
+  app.set_help_flag();
+  app.allow_extras();
+  app.allow_config_extras(CLI::config_extras_mode::error);
+  const std::vector<CLI::Option*> declared = declare(app, command);
+
+  const std::vector<Option>& options = command.options();
+  CLI::Option* config = nullptr;
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    if (options[i].flags == "--config") config = declared[i];
+    if (options[i].name() == "help" || options[i].name() == "version") declared[i]->configurable(false);
+  }
+  parseInto(app, config, argc, argv, command);
+
+  const auto given = [&](std::string_view name) {
+    for (std::size_t i = 0; i < options.size(); ++i) {
+      if (!options[i].positional && options[i].name() == name) return !declared[i]->empty();
+    }
+    return false;
+  };
+  if (given("help")) return Parsed::kHelp;
+  if (given("version")) return Parsed::kVersion;
+
+  const std::vector<std::string> extras = app.remaining();
+  for (const std::string& extra : extras) {
+    if (extra.starts_with('-') && extra != "-") failUnknown(command, extra);
+  }
+  if (!extras.empty()) failUnknown(command, extras.front());
+
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    const std::vector<std::string> texts = declared[i]->results();
+    if (!texts.empty()) {
+      assign(options[i], shownName(options[i]), texts);
+    } else if ((options[i].traits & kMustBeGiven) != 0) {
+      fail(shownName(options[i]), options[i].positional ? "is missing: " + options[i].help : "must be given");
+    }
+  }
+  return Parsed::kRun;
+}
+
+}  // namespace tet4d::cli
