@@ -114,10 +114,13 @@ namespace {
 
 // "  -o, --output FILE" and so on.
 std::string leftColumn(const Option& option) {
-  std::string left = fmt::format("  {}", option.flags);
-  if (const std::size_t comma = left.find(','); comma != std::string::npos) left.insert(comma + 1, " ");
-  if (option.positional) return left;
-  if (option.flags.starts_with("--")) left.insert(2, "    ");
+  const std::string& flags = option.flags;
+  if (option.positional) return fmt::format("  {}", flags);
+  const std::size_t comma = flags.find(',');
+  std::string left = comma != std::string::npos
+                         ? fmt::format("  {}, {}", flags.substr(0, comma), flags.substr(comma + 1))
+                     : flags.starts_with("--") ? fmt::format("      {}", flags)
+                                               : fmt::format("  {}", flags);
   const std::string choices = choicesText(option.binding);
   if (!option.value_name.empty()) left.append(" ").append(choices.empty() ? option.value_name : choices);
   return left;
