@@ -27,7 +27,7 @@ ALLOWED = {
     "libpreprocess/dyntri": BASE + ["libpreprocess/topology"],
     "player/stream": FORMATS,
     "player/scene": FORMATS + ["player/stream"],
-    "player/render": FORMATS + ["player/scene"],
+    "player/render": FORMATS + ["player/stream", "player/scene"],
     "player/host": FORMATS + ["player/stream", "player/scene", "player/render"],
     "tools/common": BASE,
     "tools": BASE + ["libpreprocess/exchange", "libpreprocess/topology", "libpreprocess/measure",
@@ -48,8 +48,8 @@ FOREIGN = {
     r"glad/.*": ["player/render", "player/host"],
     r"glm/.*": ["libpreprocess", "libpreprocess/*", "player/*", "tools", "tools/tet4d-play"],
     r"CLI/.*": ["tools/common", "tools", "tools/tet4d-play"],
-    r"nlohmann/.*": ["libpreprocess/exchange", "libpreprocess/measure", "player/host", "tools/common", "tools",
-                     "tools/tet4d-play"],
+    r"nlohmann/.*": ["libpreprocess/exchange", "libpreprocess/measure", "player/scene", "player/host", "tools/common",
+                     "tools", "tools/tet4d-play"],
     r"fmt/.*": ["libpreprocess", "libpreprocess/*", "player/host", "tools/common", "tools", "tools/tet4d-play"],
     r"CGAL/.*|gtest/.*|gmock/.*|benchmark/.*": [],
 }
@@ -66,7 +66,7 @@ def roomOf(path):
     parts = path.split("/")
     if parts[0] == "tests":
         return "tests"
-    if parts[0] == "tools" and re.match(r"(tet4d[-_])?play\b", parts[1].replace(".", " ")):
+    if parts[0] == "tools" and re.match(r"(tet4d[-_])?play([-_.]|$)", parts[1]):
         return "tools/tet4d-play"
     for length in range(len(parts) - 1, 0, -1):
         room = "/".join(parts[:length])
