@@ -4,6 +4,7 @@
 // order, each into the caller's buffer. Nothing here holds more than one frame.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -38,8 +39,8 @@ class FrameSource {
 };
 
 struct FrameSourceOptions {
-  bool allow_gaps = false;          // accept a hole in the files' numbering
-  std::vector<double> times;        // overrides the times of the files, if not empty
+  bool allow_gaps = false;    // accept a hole in the files' numbering
+  std::vector<double> times;  // overrides the times of the files, if not empty
 };
 
 // Opens frames given on a command line: several 3D NRRD files (one a frame, in the order given), one directory (its

@@ -1,0 +1,21 @@
+// Sequences of frames out: the project's own grid4, and one 4D NRRD.
+#pragma once
+
+#include <string>
+
+#include "formats/grid4.h"
+#include "libpreprocess/exchange/frame_source.h"
+#include "libpreprocess/outofcore/progress.h"
+
+namespace tet4d::exchange {
+
+// Frames into a .t4g, in order, one in memory. `provenance` is JSON. Reports the phase "write".
+void writeGrid4(const std::string& path, FrameSource& frames, paged::Codec codec, bool force,
+                const std::string& provenance, outofcore::Progress& progress);
+
+// Frames into one 4D NRRD with attached raw data, frames along the last axis. The grid stands in "space directions",
+// times in the key `times` and, where they are evenly spaced, in the frame axis too. One frame in memory; "-" is
+// standard output.
+void writeNrrd(const std::string& path, FrameSource& frames, bool force, outofcore::Progress& progress);
+
+}  // namespace tet4d::exchange
