@@ -39,7 +39,7 @@ void readNumbers(const NrrdFields& fields, const std::string& name, std::vector<
   for (std::size_t a = 0; a < words.size(); ++a) {
     const auto number = nrrdNumber(words[a]);
     if (!number) {
-      fields.fail(*fields.find(name), "\"" + words[a].substr(0, 40) + "\" is no number", "correct \"" + name + "\"");
+      fields.fail(*fields.find(name), inQuotes(words[a]) + " is no number", "correct \"" + name + "\"");
     }
     axes[a].*member = *number;
   }
@@ -49,10 +49,9 @@ std::vector<Axis> readSizes(const NrrdFields& fields) {
   const NrrdField& field = fields.need("dimension");
   const auto dimension = nrrdCount(field.text);
   if (!dimension || *dimension < 3 || *dimension > 5) {
-    fields.fail(
-        field,
-        "dimension is \"" + field.text.substr(0, 40) + "\", expected 3 (a frame) or 4 (frames along the last axis)",
-        "give one 3D file a frame, or one 4D file");
+    fields.fail(field,
+                "dimension is " + inQuotes(field.text) + ", expected 3 (a frame) or 4 (frames along the last axis)",
+                "give one 3D file a frame, or one 4D file");
   }
   std::vector<Axis> axes(*dimension);
   const NrrdField& sizes = fields.need("sizes");
@@ -60,7 +59,7 @@ std::vector<Axis> readSizes(const NrrdFields& fields) {
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const auto size = nrrdCount(words[a]);
     if (!size || *size == 0) {
-      fields.fail(sizes, "the size \"" + words[a].substr(0, 40) + "\" is no number from 1 on", "correct \"sizes\"");
+      fields.fail(sizes, "the size " + inQuotes(words[a]) + " is no number from 1 on", "correct \"sizes\"");
     }
     axes[a].size = *size;
   }
@@ -72,8 +71,7 @@ void readCenterings(const NrrdFields& fields, std::vector<Axis>& axes) {
   for (std::size_t a = 0; a < words.size(); ++a) {
     axes[a].cell = words[a] == "cell";
     if (!axes[a].cell && words[a] != "node" && words[a] != "none" && words[a] != "???") {
-      fields.fail(*fields.find("centerings"), "\"" + words[a].substr(0, 40) + "\" is no centering",
-                  "write cell, node or none");
+      fields.fail(*fields.find("centerings"), inQuotes(words[a]) + " is no centering", "write cell, node or none");
     }
   }
 }
@@ -84,8 +82,7 @@ void readDirections(const NrrdFields& fields, std::vector<Axis>& axes) {
     if (words[a] == "none" || words[a] == "???") continue;
     axes[a].direction = nrrdVector(words[a]);
     if (axes[a].direction->empty()) {
-      fields.fail(*fields.find("space directions"), "\"" + words[a].substr(0, 40) + "\" is no vector",
-                  "write (x,y,z) or none");
+      fields.fail(*fields.find("space directions"), inQuotes(words[a]) + " is no vector", "write (x,y,z) or none");
     }
   }
 }
@@ -169,10 +166,9 @@ std::vector<double> spaceOrigin(const NrrdFields& fields, std::size_t components
   const auto words = nrrdWords(field->text);
   const auto origin = words.size() == 1 ? nrrdVector(words[0]) : std::vector<double>{};
   if (origin.size() != components) {
-    fields.fail(
-        *field,
-        "expected a vector of " + std::to_string(components) + " numbers, found \"" + field->text.substr(0, 60) + "\"",
-        "write as many numbers as \"space directions\" has in a vector");
+    fields.fail(*field,
+                "expected a vector of " + std::to_string(components) + " numbers, found " + inQuotes(field->text),
+                "write as many numbers as \"space directions\" has in a vector");
   }
   return origin;
 }
@@ -251,7 +247,7 @@ std::vector<double> listedTimes(const NrrdFields& fields, const std::string& tex
   for (const std::string& word : nrrdWords(text)) {
     const auto time = nrrdNumber(word);
     if (!time || !std::isfinite(*time)) {
-      throw Error(FaultCode::kBadInput, fields.path, "key times", "\"" + word.substr(0, 40) + "\" is no time",
+      throw Error(FaultCode::kBadInput, fields.path, "key times", inQuotes(word) + " is no time",
                   "write one finite number a frame");
     }
     times.push_back(*time);
@@ -270,7 +266,7 @@ std::vector<double> singleTime(const NrrdFields& fields) {
   const auto words = nrrdWords(key->second);
   const auto time = words.size() == 1 ? nrrdNumber(words[0]) : std::nullopt;
   if (!time || !std::isfinite(*time)) {
-    throw Error(FaultCode::kBadInput, fields.path, "key time", "\"" + key->second.substr(0, 40) + "\" is no time",
+    throw Error(FaultCode::kBadInput, fields.path, "key time", inQuotes(key->second) + " is no time",
                 "write one finite number: time:=0.5");
   }
   return {*time};

@@ -62,12 +62,6 @@ std::string fieldName(std::string_view text) {
   return {};
 }
 
-std::string shown(std::string_view text) {
-  std::string out;
-  for (const char c : text.substr(0, 60)) out += std::isprint(static_cast<unsigned char>(c)) ? c : '?';
-  return text.size() > 60 ? out + "…" : out;
-}
-
 std::string unescaped(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -142,7 +136,7 @@ void readMagic(LineReader& lines, NrrdFields& header) {
   const bool ok =
       first && first->size() == 8 && first->starts_with("NRRD000") && (*first)[7] >= '1' && (*first)[7] <= '5';
   if (!ok) {
-    failLine(header, 1, "expected NRRD0001 … NRRD0005, found \"" + shown(first.value_or(std::string())) + "\"",
+    failLine(header, 1, "expected NRRD0001 … NRRD0005, found " + inQuotes(first.value_or(std::string())),
              "give a NRRD file (.nrrd, .nhdr)");
   }
   header.version = (*first)[7] - '0';
@@ -157,17 +151,17 @@ bool readLine(const std::string& line, std::size_t number, NrrdFields& header) {
   if (pair != std::string::npos && (colon == std::string::npos || pair < colon)) {
     const std::string key = unescaped(std::string_view(line).substr(0, pair));
     if (!header.key_values.emplace(key, unescaped(std::string_view(line).substr(pair + 2))).second) {
-      failLine(header, number, "the key \"" + shown(key) + "\" is given twice", "keep one of them");
+      failLine(header, number, "the key " + inQuotes(key) + " is given twice", "keep one of them");
     }
     return false;
   }
   if (colon == std::string::npos) {
-    failLine(header, number, "expected \"field: value\", \"key:=value\" or a comment, found \"" + shown(line) + "\"",
+    failLine(header, number, "expected \"field: value\", \"key:=value\" or a comment, found " + inQuotes(line),
              "correct the line, or end the header with an empty line");
   }
   const std::string name = fieldName(std::string_view(line).substr(0, colon));
   if (name.empty()) {
-    failLine(header, number, "no field of NRRD is called \"" + shown(std::string_view(line).substr(0, colon)) + "\"",
+    failLine(header, number, "no field of NRRD is called " + inQuotes(std::string_view(line).substr(0, colon)),
              "correct the name, or write \"key:=value\"");
   }
   const std::string_view text = trimmed(std::string_view(line).substr(colon + 1));
@@ -210,6 +204,14 @@ NrrdFields readNrrdFields(const InputFile& file) {
   }
   header.header_bytes = lines.position();
   return header;
+}
+
+std::string inQuotes(std::string_view text) {
+  std::string out(1, '"');
+  for (const char c : text.substr(0, 60)) out += std::isprint(static_cast<unsigned char>(c)) ? c : '?';
+  if (text.size() > 60) out += "…";
+  out += '"';
+  return out;
 }
 
 std::vector<std::string> nrrdWords(std::string_view text) {

@@ -45,6 +45,9 @@ struct NrrdFields {
 // a field unknown or given twice, a line that is neither field, key/value nor comment.
 NrrdFields readNrrdFields(const InputFile& file);
 
+// A text from a file as an error message shows it: in quotes, printable, not long.
+std::string inQuotes(std::string_view text);
+
 // The words of a field's text, divided by blanks; a text in quotes or parentheses is one word.
 std::vector<std::string> nrrdWords(std::string_view text);
 // Whole words as numbers: no sign for counts, no rest, no overflow. Numbers may be nan or inf as NRRD spells them.

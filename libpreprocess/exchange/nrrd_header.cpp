@@ -67,7 +67,7 @@ SampleType readType(const NrrdFields& fields) {
     if (row.name == field.text) return row.type;
   }
   const bool block = field.text == "block";
-  fields.fail(field, "samples of type \"" + field.text.substr(0, 40) + "\" are " + (block ? "opaque" : "unknown"),
+  fields.fail(field, "samples of type " + inQuotes(field.text) + " are " + (block ? "opaque" : "unknown"),
               "convert to an integer or floating point type (unu convert -t float)");
 }
 
@@ -75,7 +75,7 @@ NrrdEncoding readEncoding(const NrrdFields& fields) {
   const NrrdField& field = fields.need("encoding");
   if (field.text == "raw") return NrrdEncoding::kRaw;
   if (field.text == "gzip" || field.text == "gz") return NrrdEncoding::kGzip;
-  fields.fail(field, "the encoding \"" + field.text.substr(0, 40) + "\" is not read here, raw and gzip are",
+  fields.fail(field, "the encoding " + inQuotes(field.text) + " is not read here, raw and gzip are",
               "encode it again: unu save -f nrrd -e gzip -i IN -o OUT");
 }
 
@@ -83,7 +83,7 @@ bool readSwap(const NrrdFields& fields, SampleType type) {
   if (sampleBytes(type) == 1) return false;
   const NrrdField& field = fields.need("endian");
   if (field.text != "little" && field.text != "big") {
-    fields.fail(field, "endian is \"" + field.text.substr(0, 40) + "\", expected little or big", "correct \"endian\"");
+    fields.fail(field, "endian is " + inQuotes(field.text) + ", expected little or big", "correct \"endian\"");
   }
   return (field.text == "big") != (std::endian::native == std::endian::big);
 }
@@ -105,15 +105,13 @@ std::uint64_t totalBytes(const NrrdFields& fields, const NrrdAxes& axes, SampleT
 void readSkips(const NrrdFields& fields, NrrdData& data) {
   if (const NrrdField* field = fields.find("line skip")) {
     const auto lines = nrrdCount(field->text);
-    if (!lines)
-      fields.fail(*field, "\"" + field->text.substr(0, 40) + "\" is no count of lines", "write a number from 0 on");
+    if (!lines) fields.fail(*field, inQuotes(field->text) + " is no count of lines", "write a number from 0 on");
     data.line_skip = *lines;
   }
   if (const NrrdField* field = fields.find("byte skip")) {
     const auto bytes = nrrdInteger(field->text);
     if (!bytes || *bytes < -1) {
-      fields.fail(*field, "\"" + field->text.substr(0, 40) + "\" is no count of bytes",
-                  "write a number from 0 on, or -1");
+      fields.fail(*field, inQuotes(field->text) + " is no count of bytes", "write a number from 0 on, or -1");
     }
     if (*bytes == -1 && data.encoding != NrrdEncoding::kRaw) {
       fields.fail(*field, "-1 is for raw data only: the end of compressed data is not known",
@@ -138,10 +136,8 @@ std::uint64_t readPattern(const NrrdFields& fields, const NrrdField& field, cons
   const bool ok = small(min) && small(max) && small(step) && *step != 0 && (*max - *min) / *step >= 0 && subdimension &&
                   ((*max >= *min) == (*step > 0) || *max == *min) && NumberPattern::parse(words[0]);
   if (!ok) {
-    fields.fail(
-        field,
-        "expected \"PATTERN MIN MAX STEP\" with one %d in the pattern, found \"" + field.text.substr(0, 60) + "\"",
-        "correct \"data file\"");
+    fields.fail(field, "expected \"PATTERN MIN MAX STEP\" with one %d in the pattern, found " + inQuotes(field.text),
+                "correct \"data file\"");
   }
   data.pattern = words[0];
   data.pattern_min = *min;
