@@ -27,7 +27,7 @@ T unwrap(Result<T> result) {
   if (!result.ok()) throw Error(result.fault());
   return std::move(result).value();
 }
-inline void unwrap(Status status) {
+inline void unwrap(const Status& status) {
   if (!status.ok()) throw Error(status.fault());
 }
 
