@@ -54,6 +54,23 @@ bool sortEven(std::array<std::uint32_t, 3>& v) {
   return even;
 }
 
+// Whether any 3x3 minor of the three edges is not zero. Differences of f32 are exact enough in double that vertices
+// that coincide give exactly zero.
+bool hasVolume(const std::array<Vec4f, 4>& v) {
+  std::array<std::array<double, 4>, 3> edges;
+  for (std::size_t i = 0; i < 3; ++i) {
+    edges[i] = {double{v[i + 1].x} - v[0].x, double{v[i + 1].y} - v[0].y, double{v[i + 1].z} - v[0].z,
+                double{v[i + 1].t} - v[0].t};
+  }
+  for (const auto& [i, j, k] : {std::array{0u, 1u, 2u}, {0u, 1u, 3u}, {0u, 2u, 3u}, {1u, 2u, 3u}}) {
+    const auto& [p, q, r] = edges;
+    const double minor =
+        p[i] * (q[j] * r[k] - q[k] * r[j]) - p[j] * (q[i] * r[k] - q[k] * r[i]) + p[k] * (q[i] * r[j] - q[j] * r[i]);
+    if (minor != 0) return true;
+  }
+  return false;
+}
+
 class Checker {
  public:
   Checker(const hypermesh::File& file, outofcore::Progress& progress) : file_(file), reach_(file, progress) {
@@ -77,7 +94,7 @@ class Checker {
     numberLocals(page.view);
     walls_.resize(globals_.size());
     for (std::size_t i = 0; i < walls_.size(); ++i) walls_[i] = wallsOf(page.positions[i], file_.header().domain);
-    sortOutTets(page);
+    lookAtTets(page);
     bucketFaces(page.view.tets);
     matchInPage();
     matchAcrossPages();
@@ -98,23 +115,19 @@ class Checker {
     }
   }
 
-  // Marks used vertices and the tetrahedra whose faces do not count.
-  void sortOutTets(const hypermesh::GatheredPage& page) {
+  // What a tetrahedron shows on its own.
+  void lookAtTets(const hypermesh::GatheredPage& page) {
     used_.assign(globals_.size(), false);
-    degenerate_.assign(page.view.tets.size(), false);
     for (std::size_t i = 0; i < page.view.tets.size(); ++i) {
-      const Tet& tet = page.view.tets[i];
-      for (const std::uint32_t v : tet) used_[v] = true;
-      Tet sorted = tet;
-      std::sort(sorted.begin(), sorted.end());
-      if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
-        degenerate_[i] = true;
-        fault(check_.degenerate_tets, place(page_, i) + " names a vertex twice: " + numbers(sorted));
-        continue;
+      std::array<Vec4f, 4> corners;
+      for (std::size_t c = 0; c < 4; ++c) {
+        used_[page.view.tets[i][c]] = true;
+        corners[c] = page.positions[page.view.tets[i][c]];
       }
-      const float t = page.positions[tet[0]].t;
-      if (std::all_of(tet.begin(), tet.end(), [&](std::uint32_t v) { return page.positions[v].t == t; })) {
-        fault(check_.flat_time_tets, place(page_, i) + " has all four vertices at time " + std::to_string(t));
+      if (!hasVolume(corners)) ++check_.degenerate_tets;
+      if (std::all_of(corners.begin(), corners.end(), [&](const Vec4f& v) { return v.t == corners[0].t; })) {
+        fault(check_.flat_time_tets,
+              place(page_, i) + " has all four vertices at time " + std::to_string(corners[0].t));
       }
     }
   }
@@ -123,7 +136,6 @@ class Checker {
     bucket_ends_.assign(globals_.size() + 1, 0);
     const auto eachFace = [&](auto&& visit) {
       for (std::size_t i = 0; i < tets.size(); ++i) {
-        if (degenerate_[i]) continue;
         const Tet& tet = tets[i];
         for (const auto& corners : kFaceCorners) {
           std::array<std::uint32_t, 3> v{tet[corners[0]], tet[corners[1]], tet[corners[2]]};
@@ -263,10 +275,6 @@ class Checker {
   static std::string place(std::uint64_t page, std::uint64_t tet) {
     return "page " + std::to_string(page) + ", tetrahedron " + std::to_string(tet);
   }
-  std::string numbers(const Tet& locals) const {
-    return numbers(std::array<std::uint64_t, 4>{globals_[locals[0]], globals_[locals[1]], globals_[locals[2]],
-                                                globals_[locals[3]]});
-  }
   template <std::size_t n>
   static std::string numbers(const std::array<std::uint64_t, n>& vertices) {
     std::string text;
@@ -282,7 +290,6 @@ class Checker {
   std::vector<std::uint64_t> globals_;
   std::vector<bool> shared_, used_;
   std::vector<std::uint8_t> walls_;
-  std::vector<bool> degenerate_;  // by tetrahedron
   std::vector<std::size_t> bucket_ends_;
   std::vector<LocalFace> local_faces_;
   // Across pages:
