@@ -1,0 +1,111 @@
+#include "player/host/offscreen_gl.h"
+
+#include <array>
+#include <cstdlib>
+#include <utility>
+
+#ifdef TET4D_WITH_OSMESA
+#include <GL/osmesa.h>
+
+#include "player/render/gl_renderer.h"
+#endif
+
+namespace tet4d::host {
+namespace {
+
+#ifdef TET4D_WITH_OSMESA
+
+// A current context. Pictures are drawn into framebuffer objects, so its own buffer is a formality.
+class OffscreenGl {
+ public:
+  static std::unique_ptr<OffscreenGl> create() {
+    // Mesa would write compiled shaders under the user's home.
+    ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    constexpr std::array<int, 15> kAttributes{OSMESA_FORMAT,
+                                              OSMESA_RGBA,
+                                              OSMESA_DEPTH_BITS,
+                                              0,
+                                              OSMESA_STENCIL_BITS,
+                                              0,
+                                              OSMESA_ACCUM_BITS,
+                                              0,
+                                              OSMESA_PROFILE,
+                                              OSMESA_CORE_PROFILE,
+                                              OSMESA_CONTEXT_MAJOR_VERSION,
+                                              3,
+                                              OSMESA_CONTEXT_MINOR_VERSION,
+                                              3,
+                                              0};
+    auto gl = std::make_unique<OffscreenGl>();
+    gl->context_ = OSMesaCreateContextAttribs(kAttributes.data(), nullptr);
+    const bool current = gl->context_ != nullptr && OSMesaMakeCurrent(gl->context_, gl->pixels_.data(),
+                                                                      GL_UNSIGNED_BYTE, kSide, kSide) != GL_FALSE;
+    return current ? std::move(gl) : nullptr;
+  }
+  OffscreenGl() = default;
+  OffscreenGl(const OffscreenGl&) = delete;
+  OffscreenGl& operator=(const OffscreenGl&) = delete;
+  ~OffscreenGl() {
+    if (context_ != nullptr) OSMesaDestroyContext(context_);
+  }
+
+ private:
+  static constexpr int kSide = 16;  // pixels
+  OSMesaContext context_ = nullptr;
+  std::array<unsigned char, std::size_t{4} * kSide * kSide> pixels_{};
+};
+
+// Keeps the context alive for as long as the renderer that draws in it.
+class OffscreenRenderer final : public render::Renderer {
+ public:
+  OffscreenRenderer(std::unique_ptr<OffscreenGl> gl, std::unique_ptr<render::Renderer> renderer)
+      : gl_(std::move(gl)), renderer_(std::move(renderer)) {}
+  const char* name() const override { return renderer_->name(); }
+  Result<render::Image> draw(const scene::DrawList& list, const stream::PageSource& source) override {
+    return renderer_->draw(list, source);
+  }
+
+ private:
+  std::unique_ptr<OffscreenGl> gl_;  // first: destroyed after the renderer
+  std::unique_ptr<render::Renderer> renderer_;
+};
+
+Result<std::unique_ptr<render::Renderer>> makeGl(std::uint64_t gpu_budget_bytes) {
+  auto gl = OffscreenGl::create();
+  if (!gl) {
+    return Fault{FaultCode::kNotBuilt, "", "OSMesa", "gives no OpenGL 3.3 core context", "use --renderer cpu"};
+  }
+  auto renderer = render::makeGlRenderer(OSMesaGetProcAddress, gpu_budget_bytes);
+  if (!renderer.ok()) return renderer.fault();
+  return std::unique_ptr<render::Renderer>(
+      std::make_unique<OffscreenRenderer>(std::move(gl), std::move(renderer).value()));
+}
+
+#else
+
+Result<std::unique_ptr<render::Renderer>> makeGl(std::uint64_t) {
+  return Fault{FaultCode::kNotBuilt, "", "renderer gl",
+               "this build has no off-screen OpenGL (TET4D_WITH_OSMESA is off)",
+               "use --renderer cpu, or build with -DTET4D_WITH_OSMESA=ON"};
+}
+
+#endif
+
+}  // namespace
+
+bool hasOffscreenGl() {
+#ifdef TET4D_WITH_OSMESA
+  return true;
+#else
+  return false;
+#endif
+}
+
+Result<std::unique_ptr<render::Renderer>> makeOffscreenRenderer(const std::string& name, unsigned threads,
+                                                                std::uint64_t gpu_budget_bytes) {
+  if (name == "cpu") return render::makeCpuRenderer(threads);
+  if (name == "gl") return makeGl(gpu_budget_bytes);
+  return Fault{FaultCode::kUsage, "", "renderer", "found \"" + name + "\", expected gl or cpu", "give --renderer cpu"};
+}
+
+}  // namespace tet4d::host

@@ -1,0 +1,16 @@
+// PNG through libspng. The bytes depend on the picture alone.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "formats/core/result.h"
+#include "player/render/image.h"
+
+namespace tet4d::host {
+
+// 8-bit RGB (pictures are opaque), marked as sRGB. `name` stands for the file in faults.
+Result<std::vector<std::byte>> encodePng(const render::Image& image, const std::string& name);
+
+}  // namespace tet4d::host

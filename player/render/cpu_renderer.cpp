@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <string>
+#include <thread>
+
+#include "player/render/page_slice.h"
+#include "player/render/phong.h"
+#include "player/render/raster.h"
+#include "player/render/renderer.h"
+
+namespace tet4d::render {
+namespace {
+
+glm::vec3 toGlm(const Vec3f& v) { return {v.x, v.y, v.z}; }
+
+glm::vec3 unitOrZero(const glm::vec3& v) {
+  const float length = glm::length(v);
+  return length > 0 ? v / length : glm::vec3(0);
+}
+
+RasterVertex project(const scene::DrawList& list, const Vec3f& index) {
+  const glm::vec3 relative = list.index_to_relative * (toGlm(index) - list.index_centre);
+  return {list.relative_to_clip * glm::vec4(relative, 1), relative, glm::vec3(0)};
+}
+
+void addSmooth(const scene::DrawList& list, const PageSlice& slice, Raster& raster) {
+  std::vector<RasterVertex> vertices(slice.positions.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    vertices[i] = project(list, slice.positions[i]);
+    vertices[i].normal = unitOrZero(list.normal_to_relative * toGlm(slice.areas[i]));
+  }
+  for (const auto& [a, b, c] : slice.triangles) raster.add(vertices[a], vertices[b], vertices[c]);
+}
+
+void addFlat(const scene::DrawList& list, const PageSlice& slice, Raster& raster) {
+  for (const auto& triangle : slice.triangles) {
+    std::array<RasterVertex, 3> corners{};
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = project(list, slice.positions[triangle[k]]);
+    const glm::vec3 origin = toGlm(slice.positions[triangle[0]]);
+    const glm::vec3 area =
+        glm::cross(toGlm(slice.positions[triangle[1]]) - origin, toGlm(slice.positions[triangle[2]]) - origin);
+    for (RasterVertex& corner : corners) corner.normal = unitOrZero(list.normal_to_relative * area);
+    raster.add(corners[0], corners[1], corners[2]);
+  }
+}
+
+void writePixel(std::uint8_t* pixel, const glm::vec3& srgb) {
+  for (int c = 0; c < 3; ++c)
+    pixel[c] = static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(srgb[c], 0.0f, 1.0f)));
+  pixel[3] = 255;
+}
+
+// Shades the rows of one band; image rows run from the top, the raster's from the bottom.
+void shadeRows(const scene::DrawList& list, const Raster& raster, unsigned band, unsigned bands, Image& image) {
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    if (y / Raster::kBand % bands != band) continue;
+    const float height = (static_cast<float>(y) + 0.5f) / static_cast<float>(image.height);
+    const glm::vec3 behind = list.background_bottom + height * (list.background_top - list.background_bottom);
+    std::uint8_t* row = image.row(image.height - 1 - y);
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      const std::uint32_t id = raster.visible(x, y);
+      if (id == kNothing) {
+        writePixel(row + std::size_t{4} * x, behind);
+      } else {
+        const Raster::Sample sample = raster.sampleAt(id, x, y);
+        writePixel(row + std::size_t{4} * x, shade(list, sample.position, sample.normal, sample.front));
+      }
+    }
+  }
+}
+
+class CpuRenderer final : public Renderer {
+ public:
+  explicit CpuRenderer(unsigned threads) : threads_(std::max(threads, 1u)) {}
+  const char* name() const override { return "cpu"; }
+
+  Result<Image> draw(const scene::DrawList& list, const stream::PageSource& source) override {
+    const auto grid = sampleGrid(list.format);
+    if (!grid.ok()) return grid.fault();
+    Image image(list.format.width * grid.value(), list.format.height * grid.value());
+    Raster raster(image.width, image.height, list.mirrored);
+    for (const scene::DrawItem& item : list.items) {
+      const dyntri::PageView* page = source.resident(item.page);
+      if (page == nullptr) return absentPage(item.page);
+      slicer_.slice(*page, item.first, item.count, list.t, list.last_t, slice_);
+      list.smooth ? addSmooth(list, slice_, raster) : addFlat(list, slice_, raster);
+    }
+    // Rows of different bands share nothing, so the picture is the same for any number of threads.
+    const auto drawBand = [&](unsigned band) {
+      raster.resolveRows(band, threads_);
+      shadeRows(list, raster, band, threads_, image);
+    };
+    std::vector<std::jthread> helpers;
+    for (unsigned band = 1; band < threads_; ++band) helpers.emplace_back(drawBand, band);
+    drawBand(0);
+    helpers.clear();
+    return boxFilter(image, grid.value());
+  }
+
+ private:
+  unsigned threads_;
+  PageSlicer slicer_;
+  PageSlice slice_;
+};
+
+}  // namespace
+
+std::unique_ptr<Renderer> makeCpuRenderer(unsigned threads) { return std::make_unique<CpuRenderer>(threads); }
+
+}  // namespace tet4d::render

@@ -1,0 +1,83 @@
+#define GLAD_GL_IMPLEMENTATION
+#include "player/render/gl_objects.h"
+
+#include <array>
+#include <cstdio>
+
+namespace tet4d::render {
+namespace {
+
+template <class Generate>
+GLuint generate(Generate generator) {
+  GLuint name = 0;
+  generator(1, &name);
+  return name;
+}
+
+Result<GLuint> compile(GLenum stage, const char* name, const std::string& defines, const char* text) {
+  const std::string head = "#version 330 core\n" + defines;
+  const std::array<const char*, 2> texts{head.c_str(), text};
+  const GLuint shader = glCreateShader(stage);
+  glShaderSource(shader, 2, texts.data(), nullptr);
+  glCompileShader(shader);
+  GLint compiled = 0;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+  if (compiled != 0) return shader;
+  std::array<char, 2048> log{};
+  glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
+  glDeleteShader(shader);
+  const char* stage_name = stage == GL_VERTEX_SHADER ? " (vertex)" : " (fragment)";
+  return Fault{FaultCode::kNotBuilt, "", std::string("shader ") + name + stage_name,
+               std::string("the driver refuses it: ") + log.data(), "use --renderer cpu"};
+}
+
+}  // namespace
+
+GLuint BufferKind::create() { return generate(glGenBuffers); }
+void BufferKind::destroy(GLuint name) { glDeleteBuffers(1, &name); }
+GLuint TextureKind::create() { return generate(glGenTextures); }
+void TextureKind::destroy(GLuint name) { glDeleteTextures(1, &name); }
+GLuint FramebufferKind::create() { return generate(glGenFramebuffers); }
+void FramebufferKind::destroy(GLuint name) { glDeleteFramebuffers(1, &name); }
+GLuint VertexArrayKind::create() { return generate(glGenVertexArrays); }
+void VertexArrayKind::destroy(GLuint name) { glDeleteVertexArrays(1, &name); }
+GLuint ProgramKind::create() { return glCreateProgram(); }
+void ProgramKind::destroy(GLuint name) { glDeleteProgram(name); }
+
+Result<GlProgram> GlProgram::link(const char* name, const std::string& defines, const char* vertex,
+                                  const char* fragment) {
+  auto vertex_shader = compile(GL_VERTEX_SHADER, name, defines, vertex);
+  if (!vertex_shader.ok()) return vertex_shader.fault();
+  auto fragment_shader = compile(GL_FRAGMENT_SHADER, name, defines, fragment);
+  if (!fragment_shader.ok()) {
+    glDeleteShader(vertex_shader.value());
+    return fragment_shader.fault();
+  }
+  GlProgram program;
+  program.name_ = GlName<ProgramKind>::create();
+  const GLuint id = program.name_.get();
+  for (const GLuint shader : {vertex_shader.value(), fragment_shader.value()}) {
+    glAttachShader(id, shader);
+    glDeleteShader(shader);
+  }
+  glLinkProgram(id);
+  GLint linked = 0;
+  glGetProgramiv(id, GL_LINK_STATUS, &linked);
+  if (linked != 0) return program;
+  std::array<char, 2048> log{};
+  glGetProgramInfoLog(id, static_cast<GLsizei>(log.size()), nullptr, log.data());
+  return Fault{FaultCode::kNotBuilt, "", std::string("shader ") + name,
+               std::string("the driver refuses to link it: ") + log.data(), "use --renderer cpu"};
+}
+
+Status checkGl(const char* doing) {
+  const GLenum error = glGetError();
+  if (error == GL_NO_ERROR) return {};
+  std::array<char, 32> code{};
+  std::snprintf(code.data(), code.size(), "GL error 0x%04x", error);
+  const bool no_memory = error == GL_OUT_OF_MEMORY;
+  return Fault{no_memory ? FaultCode::kOutOfMemory : FaultCode::kIo, "", doing, code.data(),
+               no_memory ? "give a smaller --size or fewer --samples" : "use --renderer cpu"};
+}
+
+}  // namespace tet4d::render

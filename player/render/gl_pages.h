@@ -1,0 +1,41 @@
+// Copies of pages in the driver's memory, as buffer textures, within a byte budget. Private to player/render.
+#pragma once
+
+#include <cstdint>
+#include <map>
+
+#include "formats/dynamic_triangles.h"
+#include "player/render/gl_objects.h"
+
+namespace tet4d::render {
+
+// Texture units of the lookup shader.
+enum GlUnit : int { kVerticesUnit, kEdgesUnit, kTrianglesUnit, kLifespansUnit, kNormalSumsUnit };
+
+struct GlPage {
+  GlBuffer buffers[4];
+  GlTexture textures[4];  // by unit
+  std::uint64_t bytes = 0;
+  std::uint64_t last_frame = 0;
+  GLint edge_count = 0;
+  GLint key_count = 0;  // edges + vertices
+
+  // Binds the four tables to their units.
+  void bind() const;
+};
+
+class GlPages {
+ public:
+  explicit GlPages(std::uint64_t budget_bytes) : budget_bytes_(budget_bytes) {}
+  void beginFrame() { ++frame_; }
+  // The copy of page `number`, made from `page` if there is none. Fault if a table exceeds the driver's limit.
+  Result<const GlPage*> get(std::size_t number, const dyntri::PageView& page);
+  // Drops the copies used longest ago, none of this frame, until the budget holds.
+  void evict();
+
+ private:
+  std::uint64_t budget_bytes_, bytes_ = 0, frame_ = 0;
+  std::map<std::size_t, GlPage> pages_;
+};
+
+}  // namespace tet4d::render

@@ -1,0 +1,32 @@
+// The slice of one page on the CPU: what the lookup shader does, with the same keys and the same formula.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "formats/dynamic_triangles.h"
+
+namespace tet4d::render {
+
+// Slice vertices are welded by key: the edge they cross, or, when t is exactly the time of an edge's end, that end.
+struct PageSlice {
+  std::vector<Vec3f> positions;                         // index space
+  std::vector<Vec3f> areas;                             // sum of the cross products of the triangles at the vertex
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise from outside; no two corners alike
+};
+
+// Slices pages; keeps its table of keys between calls, so that a film does not allocate for every frame.
+class PageSlicer {
+ public:
+  // Triangles first .. first + count - 1 of `page` that are alive at t. O(count), memory O(edges + vertices).
+  void slice(const dyntri::PageView& page, std::uint64_t first, std::uint64_t count, float t, float last_t,
+             PageSlice& out);
+
+ private:
+  std::uint32_t vertexOf(const dyntri::PageView& page, std::uint32_t edge, float t, PageSlice& out);
+
+  std::vector<std::uint32_t> vertex_of_key_;  // keys: the edges, then the vertices
+};
+
+}  // namespace tet4d::render

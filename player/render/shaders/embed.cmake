@@ -1,0 +1,16 @@
+# Writes the shaders named in SHADERS (file names in DIR) into the header OUT as string constants:
+# dyntri.vert.glsl becomes kDyntriVert. Run at build time with cmake -P.
+set(text "// Made from player/render/shaders at build time.\n#pragma once\n\nnamespace tet4d::render::shaders {\n\n")
+foreach(shader IN LISTS SHADERS)
+  string(REGEX MATCH "^([a-z])([a-z]*)\\.([a-z])([a-z]*)\\.glsl$" matched ${shader})
+  if(NOT matched)
+    message(FATAL_ERROR "shader ${shader}: expected a name like dyntri.vert.glsl")
+  endif()
+  string(TOUPPER ${CMAKE_MATCH_1} first)
+  string(TOUPPER ${CMAKE_MATCH_3} second)
+  set(name k${first}${CMAKE_MATCH_2}${second}${CMAKE_MATCH_4})
+  file(READ ${DIR}/${shader} source)
+  string(APPEND text "inline constexpr const char* ${name} = R\"glsl(${source})glsl\";\n\n")
+endforeach()
+string(APPEND text "}  // namespace tet4d::render::shaders\n")
+file(WRITE ${OUT} "${text}")

@@ -1,0 +1,70 @@
+#include "player/scene/dyntri_chooser.h"
+
+#include <algorithm>
+#include <glm/vec4.hpp>
+
+#include "formats/core/tet_slice.h"
+
+namespace tet4d::scene {
+namespace {
+
+// True if one plane of the view has the whole box behind it. Conservative: a box near a corner of the view may stay.
+bool isOutside(const Bounds4f& box, const DrawList& camera) {
+  std::array<bool, 6> all_behind;
+  all_behind.fill(true);
+  for (const glm::dvec3& corner : cornersOf(box)) {
+    const glm::dvec3 relative = glm::dmat3(camera.index_to_relative) * (corner - glm::dvec3(camera.index_centre));
+    const glm::dvec4 clip = glm::dmat4(camera.relative_to_clip) * glm::dvec4(relative, 1);
+    // A hair of slack, so that float rounding in a renderer never shows what was culled here.
+    const double w = clip.w + 1e-5 * (std::abs(clip.w) + 1e-30);
+    for (int axis = 0; axis < 3; ++axis) {
+      all_behind[static_cast<std::size_t>(2 * axis)] &= clip[axis] < -w;
+      all_behind[static_cast<std::size_t>(2 * axis + 1)] &= clip[axis] > w;
+    }
+  }
+  return std::any_of(all_behind.begin(), all_behind.end(), [](bool behind) { return behind; });
+}
+
+}  // namespace
+
+std::vector<std::size_t> choosePages(std::span<const paged::PageEntry> entries, float t, float last_t,
+                                     const DrawList& camera) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t page = 0; page < entries.size(); ++page) {
+    const paged::PageEntry& entry = entries[page];
+    if (entry.counts[2] == 0 || !isAlive(entry.bounds.min.t, entry.bounds.max.t, t, last_t)) continue;
+    if (!isOutside(entry.bounds, camera)) chosen.push_back(page);
+  }
+  return chosen;
+}
+
+void chooseTriangles(const stream::PageSource& source, std::span<const std::size_t> pages, float t, float last_t,
+                     DrawList& list) {
+  list.t = t;
+  list.last_t = last_t;
+  list.items.clear();
+  list.processed = list.drawn = list.absent = 0;
+  for (const std::size_t page : pages) {
+    const dyntri::PageView* view = source.resident(page);
+    if (view == nullptr) {
+      ++list.absent;
+      continue;
+    }
+    const auto lives = view->lifespans;
+    const auto begun = std::upper_bound(lives.begin(), lives.end(), t,
+                                        [](float time, const dyntri::Lifespan& life) { return time < life.begin; });
+    std::uint64_t first = 0, last = 0, alive = 0;
+    for (auto life = lives.begin(); life != begun; ++life) {
+      if (!isAlive(life->begin, life->end, t, last_t)) continue;
+      const auto index = static_cast<std::uint64_t>(life - lives.begin());
+      if (alive++ == 0) first = index;
+      last = index;
+    }
+    if (alive == 0) continue;
+    list.items.push_back({page, first, last - first + 1});
+    list.processed += last - first + 1;
+    list.drawn += alive;
+  }
+}
+
+}  // namespace tet4d::scene

@@ -1,0 +1,26 @@
+// Chooses what to draw of a file of dynamic triangles: pages by time and by view, then the run of triangles within
+// each.
+//
+// Ponchio & Hormann 2008, sec. 7.1. Triangles of a page are sorted by the begin of their lifespans, so those that begin
+// after t are a suffix that is never handed over; of the rest the run from the first to the last living one is.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "player/scene/draw_list.h"
+#include "player/stream/page_source.h"
+
+namespace tet4d::scene {
+
+// The pages to bring in and draw at time t (frames): their interval holds t — half-open, closed at last_t — they have
+// triangles, and their box is not outside the view. In page order. `camera` as made by makeDrawList(). O(pages).
+std::vector<std::size_t> choosePages(std::span<const paged::PageEntry> entries, float t, float last_t,
+                                     const DrawList& camera);
+
+// Fills in t, last_t, items and counts from those of `pages` that are resident. O(triangles that have begun).
+void chooseTriangles(const stream::PageSource& source, std::span<const std::size_t> pages, float t, float last_t,
+                     DrawList& list);
+
+}  // namespace tet4d::scene

@@ -1,0 +1,90 @@
+// The two renderers give the same picture: OpenGL's lookup shader and the CPU's slicer and rasterizer.
+//
+// Tolerances: RMS below 2/255, fewer than 0.5 % of the pixels with a channel that differs by more than 8/255 (pixels on
+// silhouettes, where the two disagree about a sample by rounding).
+#include <gtest/gtest.h>
+
+#include <glm/vec3.hpp>
+
+#include "player/host/offscreen_gl.h"
+#include "tests/player/picture.h"
+#include "tests/player/swept_mesh.h"
+
+namespace tet4d {
+namespace {
+
+using test::Stage;
+
+class Agreement : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!host::hasOffscreenGl()) GTEST_SKIP() << "this build has no off-screen OpenGL";
+    auto made = host::makeOffscreenRenderer("gl", 1, 1u << 30);
+    ASSERT_TRUE(made.ok()) << made.fault().place << ": " << made.fault().what;
+    gl_ = std::move(made).value();
+    cpu_ = render::makeCpuRenderer(2);
+  }
+
+  void expectSame(Stage& stage, float t, const std::string& what) {
+    const test::Difference d = test::compare(stage.draw(*gl_, t), stage.draw(*cpu_, t));
+    EXPECT_LT(d.rms, 2) << what << ", t = " << t;
+    EXPECT_LT(d.share_above_8, 0.005) << what << ", t = " << t;
+    worst_rms_ = std::max(worst_rms_, d.rms);
+    worst_share_ = std::max(worst_share_, d.share_above_8);
+  }
+  void TearDown() override {
+    RecordProperty("worst_rms", std::to_string(worst_rms_));
+    RecordProperty("worst_share_above_8", std::to_string(worst_share_));
+  }
+
+  std::unique_ptr<render::Renderer> gl_, cpu_;
+  double worst_rms_ = 0, worst_share_ = 0;
+};
+
+TEST_F(Agreement, AtFrameTimesBetweenAndAtTheLastTime) {
+  Stage stage(test::writeTestSphere("agree_times.t4d", 4));
+  for (const bool smooth : {true, false}) {
+    stage.smooth = smooth;
+    for (const float t : {0.0f, 0.37f, 1.0f, 1.5f, 2.999f, 3.0f}) expectSame(stage, t, smooth ? "smooth" : "flat");
+  }
+}
+
+TEST_F(Agreement, OrthographicSampledMirroredAndFar) {
+  Stage stage(test::writeTestSphere("agree_views.t4d", 2));
+  stage.format.samples = 4;
+  expectSame(stage, 0.4f, "4 samples");
+  stage.shot.view.ortho_height = 14;
+  expectSame(stage, 0.4f, "orthographic");
+  SetUp();  // a renderer serves one file
+  Stage far(
+      test::writeTestSphere("agree_far.t4d", 2, {{4e6, -3e6, 5e5}, {{{-0.1, 0, 0}, {0, 0.1, 0.02}, {0, 0, 0.1}}}}));
+  expectSame(far, 0.4f, "mirrored, sheared and far");
+}
+
+TEST_F(Agreement, WithTheEyeInsideAndTrianglesAcrossTheNearPlane) {
+  Stage stage(test::writeTestSphere("agree_inside.t4d", 2));
+  stage.shot.view.eye = {8.5, 8, 8};
+  stage.shot.view.target = {8.5, 20, 9};
+  stage.shot.view.fov_y_degrees = 100;
+  expectSame(stage, 0.5f, "inside");
+  stage.shot.view.eye = {8.5, 3.9, 8};  // grazing the surface
+  stage.shot.view.near_distance = 0.05;
+  expectSame(stage, 0.5f, "grazing");
+}
+
+TEST_F(Agreement, PagesOfSeveralFrames) {
+  const test::Page page = test::sweep(test::icosphere(2), test::kTestSphere.motion(), 0, 3);
+  Stage stage(test::writeFile("agree_page.t4d", {page}, {{}, {0, 1, 2, 3}, paged::Codec::kRaw}));
+  for (const float t : {0.5f, 1.0f, 2.0f, 2.5f, 3.0f}) expectSame(stage, t, "one page");
+}
+
+TEST_F(Agreement, TestCanFail) {
+  Stage stage(test::writeTestSphere("agree_fail.t4d", 2));
+  const render::Image a = stage.draw(*gl_, 0.4f);
+  stage.shot.lights[0].direction.x += 0.15;
+  const test::Difference d = test::compare(a, stage.draw(*cpu_, 0.4f));
+  EXPECT_TRUE(d.rms >= 2 || d.share_above_8 >= 0.005) << "a light turned by a few degrees must be noticed";
+}
+
+}  // namespace
+}  // namespace tet4d

@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+
+#include "player/scene/dyntri_chooser.h"
+#include "tests/player/swept_mesh.h"
+
+namespace tet4d::scene {
+namespace {
+
+const Format kFormat{320, 200, 1};
+
+dyntri::File openFile(const std::string& path) {
+  auto file = dyntri::File::open(path);
+  EXPECT_TRUE(file.ok()) << (file.ok() ? "" : file.fault().what);
+  return std::move(file).value();
+}
+
+DrawList cameraFor(const dyntri::File& file) {
+  const WorldBox box = worldBox(file.header().index_to_world, file.header().bounds);
+  return makeDrawList(box, defaultShot(box, 1.6), kFormat, true);
+}
+
+TEST(DrawList, DefaultCameraShowsAllCornersAndFillsThePicture) {
+  const AffineMap map{{100, -50, 3}, {{{2, 0, 0}, {0, 0.5, 0}, {0, 0.25, 1}}}};
+  const WorldBox box = worldBox(map, {{0, 0, 0, 0}, {10, 20, 30, 1}});
+  const DrawList list = makeDrawList(box, defaultShot(box, 1.6), kFormat, true);
+  double widest = 0;
+  for (const glm::dvec3& corner : box.corners) {
+    const glm::vec4 clip = list.relative_to_clip * glm::vec4(glm::vec3(corner), 1);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(clip[axis]), clip.w);
+    widest = std::max({widest, std::abs(double(clip.x / clip.w)), std::abs(double(clip.y / clip.w))});
+  }
+  EXPECT_GT(widest, 0.85);
+}
+
+TEST(DrawList, FarOriginCostsNoPrecision) {
+  const Bounds4f bounds{{0, 0, 0, 0}, {10, 10, 10, 1}};
+  const AffineMap near_map{{0, 0, 0}, {{{0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}}}};
+  AffineMap far_map = near_map;
+  far_map.origin = {4.5e6, -3e6, 6e5};
+  const auto listFor = [&](const AffineMap& map) {
+    const WorldBox box = worldBox(map, bounds);
+    return makeDrawList(box, defaultShot(box, 1.6), kFormat, true);
+  };
+  const DrawList near_list = listFor(near_map), far_list = listFor(far_map);
+  const glm::vec4 p(0.05f, 0.04f, -0.03f, 1);
+  const glm::vec4 a = near_list.relative_to_clip * p, b = far_list.relative_to_clip * p;
+  // A double at 4.5e6 resolves 1e-9: relative to the box of 0.1 that is 1e-8 of the picture.
+  EXPECT_NEAR(a.x / a.w, b.x / b.w, 2e-6);
+  EXPECT_NEAR(a.y / a.w, b.y / b.w, 2e-6);
+  EXPECT_NEAR(a.z / a.w, b.z / b.w, 2e-5);
+}
+
+TEST(DrawList, NormalsPointOutUnderAMirrorMap) {
+  const AffineMap mirror{{0, 0, 0}, {{{-2, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+  const WorldBox box = worldBox(mirror, {{-1, -1, -1, 0}, {1, 1, 1, 1}});
+  const DrawList list = makeDrawList(box, defaultShot(box, 1), kFormat, true);
+  EXPECT_TRUE(list.mirrored);
+  // Outwards in index space at (1, 0, 0) is +x there; in the world that place is at -2 and outwards is -x.
+  EXPECT_LT((list.normal_to_relative * glm::vec3(1, 0, 0)).x, 0);
+}
+
+TEST(DrawList, EmptyAndFlatBoxesGiveFiniteMatrices) {
+  for (const Bounds4f& bounds :
+       {Bounds4f{}, Bounds4f{{0, 0, 0, 0}, {0, 0, 0, 0}}, Bounds4f{{0, 0, 0, 0}, {5, 5, 0, 1}}}) {
+    const WorldBox box = worldBox({}, bounds);
+    const DrawList list = makeDrawList(box, defaultShot(box, 1), kFormat, true);
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) EXPECT_TRUE(std::isfinite(list.relative_to_clip[i][j]));
+    }
+  }
+}
+
+TEST(Chooser, PagesByHalfOpenIntervalsClosedAtTheLastTime) {
+  const dyntri::File file = openFile(test::writeTestSphere("chooser_time.t4d", 4));
+  const DrawList camera = cameraFor(file);
+  const auto at = [&](float t) { return choosePages(file.pages().entries(), t, 3, camera); };
+  using Pages = std::vector<std::size_t>;
+  EXPECT_EQ(at(0), Pages{0});
+  EXPECT_EQ(at(0.999f), Pages{0});
+  EXPECT_EQ(at(1), Pages{1});
+  EXPECT_EQ(at(2), Pages{2});
+  EXPECT_EQ(at(3), Pages{2}) << "the last time is closed";
+  EXPECT_EQ(at(3.001f), Pages{});
+  EXPECT_EQ(at(-0.001f), Pages{});
+}
+
+TEST(Chooser, PagesOutsideTheViewAreCulled) {
+  // Two spheres far apart, each a page of its own over the same time.
+  const test::Surface ball = test::icosphere(1);
+  const test::MovingSphere left{{0, 0, 0}, {0, 0, 0}, 1, 0}, right{{100, 0, 0}, {0, 0, 0}, 1, 0};
+  const dyntri::File file = openFile(test::writeFile(
+      "chooser_view.t4d", {test::sweep(ball, left.motion(), 0, 1), test::sweep(ball, right.motion(), 0, 1)},
+      {{}, {0, 1}, paged::Codec::kRaw}));
+  const WorldBox box = worldBox({}, file.header().bounds);
+  Shot shot = defaultShot(box, 1.6);
+  const auto chosen = [&] {
+    return choosePages(file.pages().entries(), 0.5f, 1, makeDrawList(box, shot, kFormat, true));
+  };
+  using Pages = std::vector<std::size_t>;
+  EXPECT_EQ(chosen(), (Pages{0, 1}));
+  shot.view.eye = {0, -10, 0};
+  shot.view.target = {0, 0, 0};
+  EXPECT_EQ(chosen(), Pages{0});
+  shot.view.eye = {100, -10, 0};
+  shot.view.target = {100, 0, 0};
+  EXPECT_EQ(chosen(), Pages{1});
+  shot.view.target = {100, -20, 0};
+  EXPECT_EQ(chosen(), Pages{}) << "all behind the eye";
+  shot.view = {};
+  shot.view.eye = {0, -10, 0};
+  shot.view.ortho_height = 4;
+  EXPECT_EQ(chosen(), Pages{0});
+}
+
+TEST(Chooser, CountsAreExactAndNothingAliveIsLeftOut) {
+  // One page over three frames, so that its triangles begin at different times.
+  const test::Page page = test::sweep(test::icosphere(2), test::kTestSphere.motion(), 0, 3);
+  const dyntri::File file =
+      openFile(test::writeFile("chooser_counts.t4d", {page}, {{}, {0, 1, 2, 3}, paged::Codec::kRaw}));
+  stream::PageSource source(file, 1u << 30);
+  ASSERT_TRUE(source.load(0).ok());
+  const std::size_t pages[] = {0};
+  for (const float t : {0.0f, 0.25f, 1.0f, 1.5f, 2.0f, 2.999f, 3.0f}) {
+    DrawList list = cameraFor(file);
+    chooseTriangles(source, pages, t, 3, list);
+    std::uint64_t alive = 0, first = page.triangles.size(), last = 0;
+    for (std::size_t i = 0; i < page.lifespans.size(); ++i) {
+      const auto [begin, end] = page.lifespans[i];
+      if (!((begin <= t && t < end) || (t == 3 && end == 3))) continue;
+      ++alive;
+      first = std::min<std::uint64_t>(first, i);
+      last = std::max<std::uint64_t>(last, i);
+    }
+    ASSERT_GT(alive, 0u) << t;
+    EXPECT_EQ(list.drawn, alive) << t;
+    ASSERT_EQ(list.items.size(), 1u);
+    EXPECT_EQ(list.items[0].first, first);
+    EXPECT_EQ(list.items[0].count, last - first + 1);
+    EXPECT_EQ(list.processed, list.items[0].count);
+    EXPECT_LT(list.processed, page.triangles.size()) << "the other frames' triangles are not handed over";
+  }
+}
+
+TEST(Chooser, AbsentPagesAreCountedAndNotDrawn) {
+  const dyntri::File file = openFile(test::writeTestSphere("chooser_absent.t4d", 3));
+  stream::PageSource source(file, 1u << 30);
+  DrawList list = cameraFor(file);
+  const std::size_t pages[] = {0};
+  chooseTriangles(source, pages, 0.5f, 2, list);
+  EXPECT_EQ(list.absent, 1u);
+  EXPECT_TRUE(list.items.empty());
+}
+
+}  // namespace
+}  // namespace tet4d::scene
