@@ -27,8 +27,10 @@ std::string nrrdType(SampleType type) {
   return (name[0] == 'u' ? "uint" : "int") + name.substr(1);
 }
 
-std::string vectorText(const std::array<double, 3>& v) {
-  return "(" + numberText(v[0]) + "," + numberText(v[1]) + "," + numberText(v[2]) + ")";
+void appendVector(std::string& text, const std::array<double, 3>& v) {
+  text.append(" (").append(numberText(v[0]));
+  text.append(",").append(numberText(v[1]));
+  text.append(",").append(numberText(v[2])).append(")");
 }
 
 bool areEven(const std::vector<double>& times) {
@@ -40,22 +42,25 @@ bool areEven(const std::vector<double>& times) {
 }
 
 std::string nrrdHeader(const GridInfo& grid, const std::vector<double>& times) {
-  std::string text = "NRRD0005\ntype: " + nrrdType(grid.type) + "\ndimension: 4\nspace dimension: 3\nsizes:";
-  for (const std::uint64_t size : grid.dims) text += " " + std::to_string(size);
-  text += " " + std::to_string(times.size()) + "\nspace directions:";
-  for (const auto& axis : grid.index_to_world.axes) text += " " + vectorText(axis);
-  text += " none\nspace origin: " + vectorText(grid.index_to_world.origin) + "\n";
+  std::string text("NRRD0005\ntype: ");
+  text.append(nrrdType(grid.type)).append("\ndimension: 4\nspace dimension: 3\nsizes:");
+  for (const std::uint64_t size : grid.dims) text.append(" ").append(std::to_string(size));
+  text.append(" ").append(std::to_string(times.size())).append("\nspace directions:");
+  for (const auto& axis : grid.index_to_world.axes) appendVector(text, axis);
+  text.append(" none\nspace origin:");
+  appendVector(text, grid.index_to_world.origin);
   if (areEven(times)) {
     const double step = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-    text +=
-        "spacings: nan nan nan " + numberText(step) + "\naxis mins: nan nan nan " + numberText(times.front()) + "\n";
+    text.append("\nspacings: nan nan nan ").append(numberText(step));
+    text.append("\naxis mins: nan nan nan ").append(numberText(times.front()));
   }
-  text += "kinds: domain domain domain time\nencoding: raw\n";
-  if (sampleBytes(grid.type) > 1) text += "endian: little\n";
-  std::string list = "times:=";
-  for (std::size_t k = 0; k < times.size(); ++k) list += (k == 0 ? "" : " ") + numberText(times[k]);
-  if (list.size() <= kMaxNrrdLineBytes) return text + list + "\n\n";
-  if (areEven(times)) return text + "\n";
+  text.append("\nkinds: domain domain domain time\nencoding: raw\n");
+  if (sampleBytes(grid.type) > 1) text.append("endian: little\n");
+  std::string list("times:=");
+  for (const double time : times) list.append(numberText(time)).append(" ");
+  list.back() = '\n';
+  if (list.size() <= kMaxNrrdLineBytes) return text.append(list).append("\n");
+  if (areEven(times)) return text.append("\n");
   throw Error(FaultCode::kUsage, "", "", std::to_string(times.size()) + " uneven times are too many for a NRRD header",
               "write fewer frames, or .t4g");
 }
@@ -63,7 +68,7 @@ std::string nrrdHeader(const GridInfo& grid, const std::vector<double>& times) {
 }  // namespace
 
 void writeGrid4(const std::string& path, FrameSource& frames, paged::Codec codec, bool force,
-                const std::string& provenance, outofcore::Progress& progress) {
+                const ProvenanceOf& provenance, outofcore::Progress& progress) {
   grid4::GridHeader header{};
   std::copy(frames.grid().dims.begin(), frames.grid().dims.end(), header.dims);
   header.frames = frames.times().size();
@@ -71,13 +76,15 @@ void writeGrid4(const std::string& path, FrameSource& frames, paged::Codec codec
   header.index_to_world = frames.grid().index_to_world;
   auto writer = unwrap(grid4::Writer::create(path, header, frames.times(), codec, force));
   std::vector<std::byte> samples(static_cast<std::size_t>(frames.grid().voxels() * sampleBytes(frames.grid().type)));
+  std::vector<std::uint64_t> digests;
   progress.phase("write", header.frames);
   for (std::size_t k = 0; k < header.frames; ++k) {
     frames.readFrame(k, samples);
     unwrap(writer.addFrame(samples));
+    digests.push_back(container::xxh3(samples));
     progress.step(k + 1);
   }
-  unwrap(writer.close(provenance));
+  unwrap(writer.close(provenance(container::xxh3(std::as_bytes(std::span(digests))))));
 }
 
 void writeNrrd(const std::string& path, FrameSource& frames, bool force, outofcore::Progress& progress) {

@@ -1,6 +1,8 @@
 // Sequences of frames out: the project's own grid4, and one 4D NRRD.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <string>
 
 #include "formats/grid4.h"
@@ -9,9 +11,12 @@
 
 namespace tet4d::exchange {
 
-// Frames into a .t4g, in order, one in memory. `provenance` is JSON. Reports the phase "write".
+// Makes the provenance (JSON) from the digest of the frames' samples: XXH3-64 of the frames' XXH3-64s, in order.
+using ProvenanceOf = std::function<std::string(std::uint64_t digest)>;
+
+// Frames into a .t4g, in order, one in memory. Reports the phase "write".
 void writeGrid4(const std::string& path, FrameSource& frames, paged::Codec codec, bool force,
-                const std::string& provenance, outofcore::Progress& progress);
+                const ProvenanceOf& provenance, outofcore::Progress& progress);
 
 // Frames into one 4D NRRD with attached raw data, frames along the last axis. The grid stands in "space directions",
 // times in the key `times` and, where they are evenly spaced, in the frame axis too. One frame in memory; "-" is

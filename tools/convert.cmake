@@ -1,0 +1,1 @@
+tet4d_add_program(tet4d-convert SOURCES tet4d-convert.cpp DEPENDS tet4d::exchange tet4d::cli)
