@@ -248,7 +248,7 @@ std::vector<BadFile> badFrames() {
       page("larger", "another size", [](Image&, P& p) { p.raw_bytes += 64; }),
       page("smaller", "another size", [](Image&, P& p) { p.raw_bytes -= 64; }),
       page("magic", "compressed frame", [](Image& i, P& p) { i.bytes[p.offset] ^= std::byte{1}; }),
-      page("cut", "exactly one", [](Image&, P& p) { p.bytes -= 1; }),
+      page("cut", "exactly one", [](Image& i, P& p) { i.bytes[p.offset + --p.bytes] = std::byte{0}; }),
       page("byte_more", "exactly one", [=](Image& i, P& p) { append(i, p, {0}); }),
       page("skippable_frame", "exactly one",
            [=](Image& i, P& p) {
