@@ -38,10 +38,9 @@ class OffscreenGl {
                                               0};
     auto gl = std::make_unique<OffscreenGl>();
     gl->context_ = OSMesaCreateContextAttribs(kAttributes.data(), nullptr);
-    const bool current = gl->context_ != nullptr && OSMesaMakeCurrent(gl->context_, gl->pixels_.data(),
-                                                                      GL_UNSIGNED_BYTE, kSide, kSide) != GL_FALSE;
-    return current ? std::move(gl) : nullptr;
+    return gl->context_ != nullptr && gl->makeCurrent() ? std::move(gl) : nullptr;
   }
+  bool makeCurrent() { return OSMesaMakeCurrent(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSide, kSide) != GL_FALSE; }
   OffscreenGl() = default;
   OffscreenGl(const OffscreenGl&) = delete;
   OffscreenGl& operator=(const OffscreenGl&) = delete;
@@ -60,8 +59,19 @@ class OffscreenRenderer final : public render::Renderer {
  public:
   OffscreenRenderer(std::unique_ptr<OffscreenGl> gl, std::unique_ptr<render::Renderer> renderer)
       : gl_(std::move(gl)), renderer_(std::move(renderer)) {}
+  OffscreenRenderer(const OffscreenRenderer&) = delete;
+  OffscreenRenderer& operator=(const OffscreenRenderer&) = delete;
+  ~OffscreenRenderer() override {
+    // Names of GL objects mean something in their own context only.
+    if (gl_->makeCurrent()) {
+      renderer_.reset();
+    } else {
+      static_cast<void>(renderer_.release());  // the context takes its objects with it
+    }
+  }
   const char* name() const override { return renderer_->name(); }
   Result<render::Image> draw(const scene::DrawList& list, const stream::PageSource& source) override {
+    if (!gl_->makeCurrent()) return Fault{FaultCode::kIo, "", "OSMesa", "lost its context", "use --renderer cpu"};
     return renderer_->draw(list, source);
   }
 

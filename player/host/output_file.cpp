@@ -30,7 +30,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
   const std::filesystem::path directory = std::filesystem::path(path).parent_path();
   if (!directory.empty()) std::filesystem::create_directories(directory, error);
   // The process number keeps two runs apart; it is gone once the file has its name.
-  const std::string temporary = path + ".part-" + std::to_string(::getpid());
+  const std::string temporary = path + "." + std::to_string(::getpid()) + ".part";
   std::FILE* file = error ? nullptr : std::fopen(temporary.c_str(), "wb");
   if (file == nullptr) {
     const std::string reason = error ? error.message() : std::strerror(errno);

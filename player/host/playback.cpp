@@ -24,7 +24,7 @@ Result<render::Image> drawFrame(const dyntri::File& file, scene::DrawList& list,
 }  // namespace
 
 Status play(const dyntri::File& file, const Film& film, stream::PageSource& source, render::Renderer& renderer,
-            FrameSink& sink, ContactSheet* sheet, const std::function<void(const FrameCost&)>& after) {
+            FrameSink* sink, ContactSheet* sheet, const std::function<void(const FrameCost&)>& after) {
   using Clock = std::chrono::steady_clock;
   const scene::WorldBox box = scene::worldBox(file.header().index_to_world, file.header().bounds);
   const auto frames = film.frame_numbers.size();
@@ -36,11 +36,13 @@ Status play(const dyntri::File& file, const Film& film, stream::PageSource& sour
     const auto image = drawFrame(file, list, film.frame_numbers[i], source, renderer);
     if (!image.ok()) return image.fault();
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    if (Status status = sink.add(image.value()); !status.ok()) return status;
+    if (sink != nullptr) {
+      if (Status status = sink->add(image.value()); !status.ok()) return status;
+    }
     if (sheet != nullptr) sheet->add(image.value());
     after({i, ms, list.drawn, list.processed, source.bytesTouched()});
   }
-  return sink.finish();
+  return sink != nullptr ? sink->finish() : Status{};
 }
 
 }  // namespace tet4d::host

@@ -28,9 +28,9 @@ struct FrameCost {
   std::uint64_t drawn, processed, bytes_touched;
 };
 
-// Draws all frames in order into `sink` and, if it is not null, `sheet`. `after` is called after each frame and may
-// throw to stop; nothing is left under a final name then but finished pictures. The first Fault ends it.
+// Draws all frames in order into `sink` and `sheet`, either of which may be null. `after` is called after each frame
+// and may throw to stop; nothing is left under a final name then but finished pictures. The first Fault ends it.
 Status play(const dyntri::File& file, const Film& film, stream::PageSource& source, render::Renderer& renderer,
-            FrameSink& sink, ContactSheet* sheet, const std::function<void(const FrameCost&)>& after);
+            FrameSink* sink, ContactSheet* sheet, const std::function<void(const FrameCost&)>& after);
 
 }  // namespace tet4d::host

@@ -201,7 +201,7 @@ TEST_F(Film, PlaysWithCostsAndOrbit) {
   auto sink = makePngFrames(in("f%d.png"), times.size(), false);
   ContactSheet sheet(2, times.size(), 0);
   std::vector<FrameCost> costs;
-  const Status played = play(file.value(), film, source, *renderer.value(), *sink.value(), &sheet,
+  const Status played = play(file.value(), film, source, *renderer.value(), sink.value().get(), &sheet,
                              [&](const FrameCost& cost) { costs.push_back(cost); });
   ASSERT_TRUE(played.ok()) << played.fault().what;
   EXPECT_EQ(filesIn(), 4u);

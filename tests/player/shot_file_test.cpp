@@ -117,7 +117,7 @@ TEST(ShotFile, FaultsNameTheKeyAndTheExpectation) {
 
 TEST(ShotFile, BrokenJsonNamesLineAndColumn) {
   const Fault fault = faultOf("{\n  \"eye\": [0, 0, 1,,\n}");
-  EXPECT_EQ(fault.place, "line 2, column 20");
+  EXPECT_EQ(fault.place, "line 2, column 19");
   EXPECT_NE(faultOf("").place.find("line 1"), std::string::npos);
 }
 

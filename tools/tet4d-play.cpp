@@ -1,0 +1,172 @@
+// tet4d-play: dynamic triangles → pictures. Ponchio & Hormann 2008, sec. 7.1.
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/core/time_spec.h"
+#include "formats/hypermesh.h"
+#include "libpreprocess/error.h"
+#include "player/host/offscreen_gl.h"
+#include "player/host/output_file.h"
+#include "player/host/playback.h"
+#include "player/host/png.h"
+#include "player/scene/shot_file.h"
+#include "tools/common/cli.h"
+
+namespace {
+
+using namespace tet4d;
+
+struct Options {
+  std::string input;
+  bool offscreen = false, flat = false;
+  std::array<std::uint32_t, 2> size{1280, 720};
+  std::string at, times, camera, write_camera, contact_sheet;
+  std::string renderer = host::hasOffscreenGl() ? "gl" : "cpu";
+  std::string format = "auto";
+  std::uint64_t samples = 4, columns = 4, tiles = 0;
+  double orbit_degrees = 0, fps = 25;
+};
+
+dyntri::File openInput(const std::string& path) {
+  const container::FileHeader header = unwrap(container::peek(path));
+  if (header.payload == hypermesh::kPayload) {
+    const std::string output = std::filesystem::path(path).replace_extension(".t4d").string();
+    throw Error(FaultCode::kBadInput, path, "", "is a hypermesh, and the player plays dynamic triangles",
+                "run first: dyntri-build " + path + " -o " + output);
+  }
+  return unwrap(dyntri::File::open(path));
+}
+
+// --at, --times, or every frame of the file.
+std::vector<SliceTime> timesOf(const Options& options, std::span<const double> table) {
+  if (!options.at.empty() && !options.times.empty()) {
+    throw Error(FaultCode::kUsage, "", "", "--at and --times are both given", "give one of the two");
+  }
+  if (!options.at.empty()) return {unwrap(parseTime(options.at, table))};
+  if (!options.times.empty()) return unwrap(parseTimes(options.times, table));
+  return unwrap(parseTimes("0f:" + std::to_string(table.size() - 1) + "f:1f", table));
+}
+
+scene::Shot shotOf(const Options& options, const dyntri::File& file) {
+  const scene::WorldBox box = scene::worldBox(file.header().index_to_world, file.header().bounds);
+  const scene::Shot fitted = scene::defaultShot(box, static_cast<double>(options.size[0]) / options.size[1]);
+  return options.camera.empty() ? fitted : unwrap(scene::readShot(options.camera, fitted));
+}
+
+bool isY4m(const Options& options, const std::string& output) {
+  if (options.format != "auto") return options.format == "y4m";
+  return output == "-" || std::filesystem::path(output).extension() == ".y4m";
+}
+
+// Null if no film is asked for, only a contact sheet or a camera file.
+std::unique_ptr<host::FrameSink> sinkOf(const Options& options, const cli::CommonOptions& common, std::size_t frames) {
+  if (common.output.empty()) return nullptr;
+  if (isY4m(options, common.output)) return unwrap(host::makeY4mFilm(common.output, options.fps, common.force));
+  if (common.output == "-") {
+    throw Error(FaultCode::kUsage, "", "", "PNG frames cannot go to standard output", "give --format y4m");
+  }
+  return unwrap(host::makePngFrames(common.output, frames, common.force));
+}
+
+void writeText(const std::string& path, const std::string& text, bool force) {
+  unwrap(host::writeFile(path, std::as_bytes(std::span(text)), force));
+}
+
+void drawAll(cli::Session& session, const Options& options, const dyntri::File& file, const scene::Shot& shot,
+             const std::vector<SliceTime>& times) {
+  const cli::CommonOptions& common = session.options();
+  std::vector<float> frame_numbers;
+  for (const SliceTime& time : times) frame_numbers.push_back(sliceFrame(time.frame));
+  const host::Film film{shot,
+                        {options.size[0], options.size[1], static_cast<std::uint32_t>(options.samples)},
+                        !options.flat,
+                        options.orbit_degrees,
+                        frame_numbers};
+  unwrap(render::sampleGrid(film.format));
+  // Half of the memory allowed for decoded pages, half for the driver's copies of them.
+  const std::uint64_t budget_bytes = session.memory().available() / 2;
+  auto renderer = unwrap(
+      host::makeOffscreenRenderer(options.renderer, static_cast<unsigned>(session.executor().threads()), budget_bytes));
+  const std::unique_ptr<host::FrameSink> sink = sinkOf(options, common, times.size());
+  std::optional<host::ContactSheet> sheet;
+  if (!options.contact_sheet.empty()) {
+    unwrap(host::checkMayWrite(options.contact_sheet, common.force));
+    sheet.emplace(options.columns, times.size(), options.tiles);
+  }
+  stream::PageSource source(file, budget_bytes);
+  session.progress().phase("draw", times.size());
+  unwrap(host::play(
+      file, film, source, *renderer, sink.get(), sheet ? &*sheet : nullptr, [&](const host::FrameCost& cost) {
+        session.stats().frame({times[cost.index].time, cost.ms, cost.drawn, cost.processed, cost.bytes_touched});
+        session.progress().step(cost.index + 1);
+      }));
+  if (sheet) {
+    const std::vector<std::byte> png = unwrap(host::encodePng(sheet->compose(), options.contact_sheet));
+    unwrap(host::writeFile(options.contact_sheet, png, common.force));
+  }
+}
+
+int play(cli::Session& session, const Options& options) {
+  if (!options.offscreen) {
+    throw Error(FaultCode::kNotBuilt, "", "", "this build has no window", "give --offscreen and -o frames/%05d.png");
+  }
+  const cli::CommonOptions& common = session.options();
+  const bool draws = !common.output.empty() || !options.contact_sheet.empty();
+  if (!draws && options.write_camera.empty()) {
+    throw Error(FaultCode::kUsage, "", "", "no output is named",
+                "give -o frames/%05d.png, -o film.y4m, --contact-sheet or --write-camera");
+  }
+  const dyntri::File file = openInput(options.input);
+  session.dependsOn(options.input);
+  if (!options.camera.empty()) session.dependsOn(options.camera);
+  if (file.header().triangles == 0)
+    session.warn(options.input + " has no triangles: pictures show the background only");
+  const std::vector<SliceTime> times = timesOf(options, file.times());
+  const scene::Shot shot = shotOf(options, file);
+  session.stats().expectFrames();
+  session.stats().count("triangles", file.header().triangles);
+  session.stats().count("frames", draws ? times.size() : 0);
+  if (!options.write_camera.empty()) writeText(options.write_camera, scene::formatShot(shot), common.force);
+  if (draws) drawAll(session, options, file, shot, times);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  cli::Command command("tet4d-play", "Plays dynamic triangles: pictures or a film at any time, between frames too.");
+  command.example("tet4d-play dam.t4d --offscreen -o frames/%05d.png", "one picture a frame of the file")
+      .example("tet4d-play dam.t4d --offscreen --times 0f:20f:0.1f --format y4m -o - | ffmpeg -i - dam.mp4",
+               "ten times slower, as a film")
+      .example("tet4d-play dam.t4d --offscreen --at 0.35 --write-camera camera.json -o dam.png",
+               "one picture, and its camera to change")
+      .positional("FILE", "dynamic triangles (.t4d)", &o.input)
+      .heading("Pictures")
+      .flag("--offscreen", "draw into files, without a display", &o.offscreen)
+      .option("--size", "WxH", "of a picture, pixels", cli::Extent{&o.size})
+      .option("--at", "T", "one picture at world time T, or at frame number T with the suffix f", &o.at)
+      .option("--times", "A:B:STEP", "pictures from A to B, both included; default: every frame of the file", &o.times)
+      .option("--renderer", "WHICH", "OpenGL, or plain C++", cli::Choice{&o.renderer, {"gl", "cpu"}})
+      .option("--samples", "N", "samples a pixel: 1, 4, 9 or 16", &o.samples)
+      .flag("--flat", "one normal a triangle instead of smooth ones", &o.flat)
+      .heading("Camera")
+      .option("--camera", "FILE", "camera, lights and material (JSON); default: fitted to the data", &o.camera)
+      .option("--orbit", "DEG", "turn of the camera about the vertical over the whole film", &o.orbit_degrees)
+      .option("--write-camera", "FILE", "write the camera, as --camera reads it", &o.write_camera)
+      .heading("Film")
+      .option("--format", "WHAT", "of the output; auto: y4m for - and .y4m, else png",
+              cli::Choice{&o.format, {"auto", "png", "y4m"}})
+      .option("--fps", "N", "pictures a second of a y4m film", &o.fps)
+      .option("--contact-sheet", "FILE", "all pictures in one PNG, scaled down", &o.contact_sheet)
+      .option("--columns", "N", "of the contact sheet", &o.columns)
+      .option("--tiles", "N", "most pictures on the contact sheet, taken evenly; 0: all", &o.tiles)
+      .heading("General")
+      .common({cli::kOutput, cli::kThreads, cli::kMemory, cli::kForce, cli::kStats, cli::kDepfile});
+  return cli::run(argc, argv, command, [&](cli::Session& session) { return play(session, o); });
+}
