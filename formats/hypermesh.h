@@ -143,6 +143,8 @@ class Writer {
   // columns: one span per declared column, components * vertices.size() floats.
   Status addPage(std::span<const Vec4f> vertices, std::span<const Run> runs, std::span<const Tet> tets,
                  const Bounds4f& bounds, std::span<const std::span<const float>> columns = {});
+  // Sets flags of the header that only the data can tell, such as kInnerBoundary. Any time before close.
+  void addFlags(std::uint32_t flags) { header_.flags |= flags; }
   std::uint64_t nextVertex() const { return next_vertex_; }
   std::uint64_t tets() const { return tets_; }
   Status close(const std::string& provenance_json);
