@@ -2,10 +2,10 @@
 # find_package(tet4d) and links tet4d::formats.
 include(CMakePackageConfigHelpers)
 
-# Libraries beside the programs' own: the command line and the renderer serve the programs only and are not exported.
+# The files and the builders. The command line and the player's rooms serve our programs and are not exported.
 get_property(tet4d_libraries GLOBAL PROPERTY TET4D_LIBRARIES)
 set(tet4d_exported)
-foreach(library formats)
+foreach(library formats outofcore exchange topology measure hypermesh dyntri)
   if(tet4d_${library} IN_LIST tet4d_libraries)
     list(APPEND tet4d_exported tet4d_${library})
   endif()
@@ -13,7 +13,7 @@ endforeach()
 
 install(TARGETS ${tet4d_exported} tet4d_options EXPORT tet4dTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT tet4dTargets NAMESPACE tet4d:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/tet4d)
-install(DIRECTORY formats DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tet4d FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY formats libpreprocess DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tet4d FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY scripts/pipelines/ DESTINATION ${CMAKE_INSTALL_DATADIR}/tet4d/pipelines FILES_MATCHING PATTERN "*.mk")
 install(FILES LICENSE docs/licences.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 configure_package_config_file(cmake/tet4dConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/tet4dConfig.cmake

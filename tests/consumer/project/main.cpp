@@ -1,10 +1,12 @@
-// An outside program: writes a hypermesh of one tetrahedron, reads it back and slices it.
+// An outside program: writes a hypermesh of one tetrahedron, reads it back, slices it, and builds its dynamic
+// triangles.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 
 #include "formats/core/slicer.h"
 #include "formats/hypermesh.h"
+#include "libpreprocess/dyntri/dynamic_triangles_builder.h"
 
 namespace {
 
@@ -47,6 +49,10 @@ int main(int argc, char** argv) {
     const double side = std::hypot(p.x - q.x, p.y - q.y, p.z - q.z);
     if (std::abs(side - std::numbers::sqrt2) > 1e-6) return 1;
   }
-  std::puts("consumer: one tetrahedron written, proved and sliced");
+
+  // Three vertices share the last time: of the four triangles only the first lives.
+  const auto built = tet4d::dyntri::buildPage(page.value().view.tets, page.value().positions);
+  if (built.triangles.size() != 1 || built.empty != 3) return 1;
+  std::puts("consumer: one tetrahedron written, proved, sliced and built");
   return 0;
 }
