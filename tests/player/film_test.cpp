@@ -50,8 +50,7 @@ render::Image decodePng(const std::string& bytes) {
 class Film : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("film_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder_ = fs::path(test::temporaryDirectory()) / "film";
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }

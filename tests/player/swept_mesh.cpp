@@ -1,6 +1,7 @@
 #include "tests/player/swept_mesh.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -159,8 +160,21 @@ Motion MovingSphere::motion() const {
   };
 }
 
+const std::string& temporaryDirectory() {
+  struct Directory {
+    std::string path = testing::TempDir() + "tet4d-player-" + std::to_string(::getpid());
+    Directory() { std::filesystem::create_directories(path); }
+    ~Directory() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  };
+  static const Directory kDirectory;
+  return kDirectory.path;
+}
+
 std::string writeFile(const std::string& name, const std::vector<Page>& pages, const FileSpec& spec) {
-  const std::string path = (std::filesystem::path(testing::TempDir()) / name).string();
+  const std::string path = temporaryDirectory() + "/" + name;
   dyntri::Header header{};
   header.index_to_world = spec.map;
   header.last_time = static_cast<float>(spec.times.size() - 1);

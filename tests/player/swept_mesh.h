@@ -50,7 +50,10 @@ struct FileSpec {
   paged::Codec codec = paged::Codec::kRaw;
 };
 
-// Writes the pages and returns the path, in the tests' temporary directory.
+// A directory of this process, removed when it ends: tests of one name may run at the same time.
+const std::string& temporaryDirectory();
+
+// Writes the pages and returns the path, in temporaryDirectory().
 std::string writeFile(const std::string& name, const std::vector<Page>& pages, const FileSpec& spec);
 
 // A sphere of radius 4 -> 6 cells that moves from (8, 8, 8) by (1, 0.5, 0) a frame over `frames` frames; one page

@@ -1,0 +1,41 @@
+// Writes the files that the cases of tet4d-play.py run on into the directory named by the first argument.
+#include <filesystem>
+
+#include "formats/hypermesh.h"
+#include "tests/player/swept_mesh.h"
+
+namespace {
+
+using namespace tet4d;
+
+void write(const std::string& path, const std::vector<test::Page>& pages, const test::FileSpec& spec) {
+  std::filesystem::copy_file(test::writeFile("made.t4d", pages, spec), path,
+                             std::filesystem::copy_options::overwrite_existing);
+}
+
+// Two tetrahedra's worth of nothing: a hypermesh with an empty slab, to be refused by the player.
+void writeHypermesh(const std::string& path) {
+  const double times[] = {0, 1};
+  hypermesh::MeshHeader header{};
+  header.domain = {{0, 0, 0, 0}, {1, 1, 1, 1}};
+  auto writer = hypermesh::Writer::create(path, header, times, {}, paged::Codec::kRaw, true);
+  if (!writer.ok()) throw std::runtime_error(writer.fault().what);
+  const Status added = writer.value().addPage({}, {}, {}, {{0, 0, 0, 0}, {0, 0, 0, 1}});
+  if (!added.ok()) throw std::runtime_error(added.fault().what);
+  if (const Status closed = writer.value().close("{}"); !closed.ok()) throw std::runtime_error(closed.fault().what);
+}
+
+}  // namespace
+
+int main(int, char** argv) {
+  const std::string directory = argv[1];
+  std::filesystem::create_directories(directory);
+  const test::Surface ball = test::icosphere(2);
+  const auto motion = test::kTestSphere.motion();
+  // Frames at 10.0, 10.5 and 12.0 seconds.
+  write(directory + "/sphere.t4d", {test::sweep(ball, motion, 0, 1), test::sweep(ball, motion, 1, 2)},
+        {{}, {10, 10.5, 12}, paged::Codec::kRaw});
+  write(directory + "/empty.t4d", {}, {{}, {0, 1}, paged::Codec::kRaw});
+  writeHypermesh(directory + "/mesh.t4h");
+  return 0;
+}
