@@ -1,0 +1,60 @@
+// Frames in memory, for tests: any sample type, and a record of what was read.
+#pragma once
+
+#include <cstring>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "libpreprocess/exchange/frame_source.h"
+
+namespace tet4d::hypermesh::testing {
+
+template <class T>
+constexpr SampleType sampleTypeOf() {
+  if constexpr (std::is_same_v<T, float>) return SampleType::kF32;
+  if constexpr (std::is_same_v<T, double>) return SampleType::kF64;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return SampleType::kU8;
+  if constexpr (std::is_same_v<T, std::int16_t>) return SampleType::kI16;
+  if constexpr (std::is_same_v<T, std::int32_t>) return SampleType::kI32;
+  if constexpr (std::is_same_v<T, std::int64_t>) return SampleType::kI64;
+}
+
+template <class T>
+class MemoryFrames final : public exchange::FrameSource {
+ public:
+  using Field = std::function<T(std::uint64_t x, std::uint64_t y, std::uint64_t z, std::uint64_t frame)>;
+
+  MemoryFrames(std::array<std::uint64_t, 3> dims, std::size_t frames, const Field& field) {
+    grid_.dims = dims;
+    grid_.type = sampleTypeOf<T>();
+    for (std::size_t k = 0; k < frames; ++k) {
+      times_.push_back(static_cast<double>(k));
+      for (std::uint64_t z = 0; z < dims[2]; ++z)
+        for (std::uint64_t y = 0; y < dims[1]; ++y)
+          for (std::uint64_t x = 0; x < dims[0]; ++x) samples_.push_back(field(x, y, z, k));
+    }
+  }
+
+  const exchange::GridInfo& grid() const override { return grid_; }
+  const std::vector<double>& times() const override { return times_; }
+  void readFrame(std::size_t k, std::span<std::byte> samples) override {
+    reads.push_back(k);
+    std::memcpy(samples.data(), samples_.data() + k * grid_.voxels(), grid_.voxels() * sizeof(T));
+  }
+  std::string frameName(std::size_t k) const override { return "memory frame " + std::to_string(k); }
+
+  T at(std::uint64_t x, std::uint64_t y, std::uint64_t z, std::uint64_t k) const {
+    return samples_[((k * grid_.dims[2] + z) * grid_.dims[1] + y) * grid_.dims[0] + x];
+  }
+  std::span<const T> samples() const { return samples_; }
+
+  std::vector<std::size_t> reads;  // frames in the order they were asked for
+
+ private:
+  exchange::GridInfo grid_;
+  std::vector<double> times_;
+  std::vector<T> samples_;
+};
+
+}  // namespace tet4d::hypermesh::testing
