@@ -73,6 +73,8 @@ int body(const Options& options, cli::Session& session) {
     for (const auto& [name, value] : out["counts"].items()) session.stats().count(name, value.get<std::uint64_t>());
   } else if (!wants_validation || file.fault().code != FaultCode::kBadInput) {
     throw Error(file.fault());
+  } else {
+    out = {{"payload", nullptr}, {"version", nullptr}, {"counts", ordered_json::object()}};
   }
   bool valid = true;
   if (wants_validation) {

@@ -3,6 +3,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <fstream>
 
 #include "libpreprocess/error.h"
@@ -33,7 +34,7 @@ std::vector<CLI::Option*> declare(CLI::App& app, const Command& command) {
     if (!takesMany(option.binding)) {
       one->expected(1);
     } else if (option.positional) {
-      one->expected(-1);
+      one->expected(1, CLI::detail::expected_max_vector_size);
     } else {
       one->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
     }
@@ -43,7 +44,7 @@ std::vector<CLI::Option*> declare(CLI::App& app, const Command& command) {
   return declared;
 }
 
-// Every spelling of every option, with its dashes.
+// Every long option, with its dashes.
 std::vector<std::string> spellings(const Command& command) {
   std::vector<std::string> all;
   for (const Option& option : command.options()) {
@@ -52,12 +53,21 @@ std::vector<std::string> spellings(const Command& command) {
   return all;
 }
 
+// A long option that lost a dash ("-json") would be read as short ones ("-j son").
+void refuseLostDash(int argc, const char* const* argv, const Command& command) {
+  const std::vector<std::string> known = spellings(command);
+  for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i) {
+    const std::string word(argv[i]), mended = fmt::format("-{}", word.substr(0, word.find('=')));
+    if (word.size() > 2 && word[1] != '-' && std::find(known.begin(), known.end(), mended) != known.end()) {
+      fail(word, "there is no such option", fmt::format("did you mean {}?", mended));
+    }
+  }
+}
+
 [[noreturn]] void failUnknown(const Command& command, const std::string& argument) {
   if (!argument.starts_with('-') || argument == "-") fail(fmt::format("'{}'", argument), "is one argument too many");
   const std::string word = argument.substr(0, argument.find('='));
-  // A word after one dash is taken for a long option that lost the other.
-  const bool lost_dash = !word.starts_with("--") && word.size() > 2;
-  const std::string meant = nearest(lost_dash ? "-" + word : word, spellings(command));
+  const std::string meant = nearest(word, spellings(command));
   fail(word, "there is no such option", meant.empty() ? "see --help" : fmt::format("did you mean {}?", meant));
 }
 
@@ -100,6 +110,7 @@ Parsed parse(int argc, const char* const* argv, Command& command) {
     if (options[i].flags == "--config") config = declared[i];
     if (options[i].name() == "help" || options[i].name() == "version") declared[i]->configurable(false);
   }
+  refuseLostDash(argc, argv, command);
   parseInto(app, config, argc, argv, command);
 
   const auto given = [&](std::string_view name) {
