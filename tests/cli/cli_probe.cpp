@@ -4,6 +4,7 @@
 #include <new>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "libpreprocess/error.h"
 #include "libpreprocess/outofcore/output_file.h"
@@ -31,6 +32,7 @@ void failAs(const std::string& how) {
   if (how == "space") as(FaultCode::kNoSpace);
   if (how == "not-built") as(FaultCode::kNotBuilt);
   if (how == "bad-alloc") throw std::bad_alloc();
+  if (how == "allocation") std::vector<char>(std::size_t{1} << 30, 'x').at(12) = 'y';
   if (how == "other") throw std::runtime_error("unforeseen");
 }
 
@@ -79,9 +81,9 @@ int main(int argc, char** argv) {
       .option("--size", "WxH", "of a picture", cli::Extent{&options.size})
       .heading("Testing")
       .option("--fail", "HOW", "how to fail",
-              cli::Choice{
-                  &options.fail,
-                  {"no", "usage", "input", "io", "memory", "space", "not-built", "bad-alloc", "other", "validation"}},
+              cli::Choice{&options.fail,
+                          {"no", "usage", "input", "io", "memory", "space", "not-built", "bad-alloc", "allocation",
+                           "other", "validation"}},
               cli::kKeepsResult)
       .option("--steps", "N", "steps of a phase", &options.steps, cli::kKeepsResult)
       .option("--step-ms", "N", "length of a step", &options.step_ms, cli::kKeepsResult)

@@ -225,8 +225,8 @@ TEST_F(CliTest, HelpShowsExamplesFirstAndEveryOption) {
 }
 
 TEST_F(CliTest, ProvenanceTellsTheResultNotTheRun) {
-  parse(
-      {"/data/in/a.nrrd", "--iso", "0.25", "--camera", "/home/cam.json", "-j", "3", "-o", "/out/b", "--memory", "1G"});
+  parse({"/data/in/a.nrrd", "--iso", "0.25", "--camera", "/elsewhere/cam.json", "-j", "3", "-o", "/out/b", "--memory",
+         "1G"});
   const Session session(command_);
   const std::vector<Input> inputs{{"/data/in/a.nrrd", "00ff"}};
   const std::string text = session.provenance(inputs);

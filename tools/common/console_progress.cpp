@@ -13,6 +13,7 @@ namespace tet4d::cli {
 namespace {
 
 constexpr int kBarWidth = 32;
+constexpr double kSampleSeconds = 0.1;  // between looks at memory and redraws of the bar
 
 double seconds(std::chrono::steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -62,7 +63,6 @@ void ConsoleProgress::step(std::uint64_t done) {
   show(done_);
 }
 
-// The phase's times are kept; plain and json looks end it with a line even if its last step was never reported.
 void ConsoleProgress::endPhase() {
   if (!in_phase_) return;
   in_phase_ = false;
@@ -72,18 +72,24 @@ void ConsoleProgress::endPhase() {
   anonymous_peak_ = std::max(anonymous_peak_, processMemory("RssAnon"));
 }
 
+// While a phase runs too: its temporary memory is gone when it ends. Reading /proc takes longer than many a step.
+void ConsoleProgress::sampleMemory() {
+  if (seconds(Clock::now() - last_sampled_) < kSampleSeconds) return;
+  anonymous_peak_ = std::max(anonymous_peak_, processMemory("RssAnon"));
+  last_sampled_ = Clock::now();
+}
+
 void ConsoleProgress::show(std::uint64_t done) {
   const double since_shown = seconds(Clock::now() - last_shown_);
   const bool complete = done >= total_;
-  const std::uint64_t percent = total_ == 0 ? 100 : std::min<std::uint64_t>(100, done / ((total_ + 99) / 100));
-  // Sampled while a phase runs too: its temporary memory is gone when it ends.
-  constexpr double kSampleSeconds = 0.1;
-  if (since_shown >= kSampleSeconds) anonymous_peak_ = std::max(anonymous_peak_, processMemory("RssAnon"));
+  const double part = total_ == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
+  const auto percent = static_cast<std::uint64_t>(100 * part);
+  sampleMemory();
 
   const auto& name = phases_[current_].name;
   if (look_ == Look::kBar) {
     if (since_shown < kSampleSeconds && (!complete || !bar_on_screen_)) return;
-    drawBar(done);
+    drawBar(part);
   } else if (look_ == Look::kPlain) {
     // Every 10 %, but steps within the same second share a line; and every 30 s.
     const bool tenth = percent / 10 > shown_percent_ / 10 && (since_shown >= 1 || complete);
@@ -94,15 +100,12 @@ void ConsoleProgress::show(std::uint64_t done) {
     const nlohmann::ordered_json line{
         {"phase", name}, {"done", done}, {"total", total_}, {"seconds", secondsInPhase()}};
     fmt::print(stderr, "{}\n", line.dump());
-  } else if (since_shown < kSampleSeconds) {
-    return;
   }
   shown_percent_ = percent;
   last_shown_ = Clock::now();
 }
 
-void ConsoleProgress::drawBar(std::uint64_t done) {
-  const double part = total_ == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
+void ConsoleProgress::drawBar(double part) {
   const auto filled = static_cast<int>(part * kBarWidth);
   fmt::print(stderr, "\r\x1b[K{} {:<8} [{:#<{}}{:.<{}}] {:3.0f} %", program_, phases_[current_].name, "", filled, "",
              kBarWidth - filled, 100 * part);

@@ -44,8 +44,9 @@ class ConsoleProgress final : public outofcore::Progress {
   using Clock = std::chrono::steady_clock;
 
   void endPhase();
+  void sampleMemory();
   void show(std::uint64_t done);
-  void drawBar(std::uint64_t done);
+  void drawBar(double part);
   double secondsInPhase() const;
 
   std::mutex mutex_;
@@ -55,7 +56,7 @@ class ConsoleProgress final : public outofcore::Progress {
   std::size_t current_ = 0;  // in phases_, while in_phase_
   bool in_phase_ = false, finished_ = false;
   std::uint64_t total_ = 0, done_ = 0;
-  Clock::time_point phase_begin_, last_shown_;
+  Clock::time_point phase_begin_, last_shown_, last_sampled_{};
   double phase_cpu_begin_ = 0;
   std::uint64_t shown_percent_ = 0;
   bool bar_on_screen_ = false;

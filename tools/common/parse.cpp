@@ -29,12 +29,16 @@ std::vector<CLI::Option*> declare(CLI::App& app, const Command& command) {
       declared.push_back(app.add_flag(option.flags));
       continue;
     }
+    if (option.flags == "--config") {
+      declared.push_back(app.set_config(option.flags)->type_name(option.value_name));
+      continue;
+    }
     const auto collect = [](const CLI::results_t&) { return true; };
     CLI::Option* one = app.add_option(option.flags, collect)->type_name(option.value_name);
     if (!takesMany(option.binding)) {
       one->expected(1);
     } else if (option.positional) {
-      one->expected(1, CLI::detail::expected_max_vector_size);
+      one->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
     } else {
       one->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
     }
