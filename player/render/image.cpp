@@ -15,13 +15,26 @@ std::array<float, 256> makeDecoder() {
   return table;
 }
 
-float decode(std::uint8_t code) {
-  static const std::array<float, 256> kTable = makeDecoder();
-  return kTable[code];
-}
+const std::array<float, 256> kDecoder = makeDecoder();
+
+float decode(std::uint8_t code) { return kDecoder[code]; }
 
 std::uint8_t encode(float linear) {
   return static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(scene::linearToSrgb(linear), 0.0f, 1.0f)));
+}
+
+// encode() by table, for pictures: fine enough that every code keeps its own steps, even near black.
+constexpr float kEncoderSteps = 65535;
+
+std::vector<std::uint8_t> makeEncoder() {
+  std::vector<std::uint8_t> table(65536);
+  for (std::size_t i = 0; i < table.size(); ++i) table[i] = encode(static_cast<float>(i) / kEncoderSteps);
+  return table;
+}
+
+std::uint8_t encodeStep(float linear_steps) {
+  static const std::vector<std::uint8_t> kTable = makeEncoder();
+  return kTable[std::min(static_cast<std::size_t>(linear_steps + 0.5f), kTable.size() - 1)];
 }
 
 // How much of the pixel [x, x + 1) lies in [begin, end).
@@ -55,7 +68,27 @@ Image scaleDown(const Image& image, std::uint32_t width, std::uint32_t height) {
 }
 
 Image boxFilter(const Image& image, std::uint32_t side) {
-  return side == 1 ? image : scaleDown(image, image.width / side, image.height / side);
+  if (side == 1) return image;
+  Image out(image.width / side, image.height / side);
+  const float weight = kEncoderSteps / static_cast<float>(side * side);
+  std::vector<float> sums(std::size_t{3} * out.width);
+  for (std::uint32_t j = 0; j < out.height; ++j) {
+    std::fill(sums.begin(), sums.end(), 0.0f);
+    for (std::uint32_t y = j * side; y < (j + 1) * side; ++y) {
+      const std::uint8_t* pixel = image.row(y);
+      for (std::size_t i = 0; i < sums.size(); i += 3) {
+        for (std::uint32_t k = 0; k < side; ++k, pixel += 4) {
+          for (std::size_t c = 0; c < 3; ++c) sums[i + c] += decode(pixel[c]);
+        }
+      }
+    }
+    std::uint8_t* pixel = out.row(j);
+    for (std::size_t i = 0; i < sums.size(); i += 3, pixel += 4) {
+      for (std::size_t c = 0; c < 3; ++c) pixel[c] = encodeStep(sums[i + c] * weight);
+      pixel[3] = 255;
+    }
+  }
+  return out;
 }
 
 }  // namespace tet4d::render

@@ -32,7 +32,7 @@ struct Light {
 
 struct Material {
   glm::dvec3 color{0.23, 0.54, 0.74};       // sRGB, of the side that faces out of the inside set
-  glm::dvec3 back_color{0.83, 0.66, 0.49};  // sRGB, of the other side
+  glm::dvec3 back_color{0.14, 0.35, 0.50};  // sRGB, of the other side
   double specular = 0.25;                   // linear, >= 0
   double shininess = 48;                    // exponent of Phong's highlight, >= 1
 };
