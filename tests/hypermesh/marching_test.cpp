@@ -282,6 +282,16 @@ TEST(Marching, PagesOwnTheirFrameAndTheLastOneTwo) {
   }
 }
 
+TEST(Marching, CompressedPagesHoldTheSameMesh) {
+  if (!paged::hasCodec(paged::Codec::kZstd)) GTEST_SKIP() << "this build has no zstd";
+  MemoryFrames<float> source = noise({9, 9, 9}, 4, 3);
+  const ExtractedMesh raw = extract(source, {.iso = 0.5});
+  const ExtractedMesh packed = extract(source, {.iso = 0.5, .page_codec = paged::Codec::kZstd});
+  EXPECT_EQ(packed.vertices, raw.vertices);
+  EXPECT_EQ(packed.tets, raw.tets);
+  EXPECT_LT(packed.bytes.size(), raw.bytes.size());
+}
+
 // The same numbers give the same mesh in every sample type that holds them.
 template <class T>
 ExtractedMesh ofBytes() {

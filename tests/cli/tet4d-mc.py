@@ -1,0 +1,234 @@
+"""Cases of tet4d-mc."""
+
+
+def frame(top, time=None, sizes="3 2 2", samples=None):
+    """A 3D NRRD of bytes whose values are the characters' codes: 0 and 1 stand for 48 and 49."""
+    clock = "" if time is None else f"time:={time}\n"
+    return f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: {sizes}\nencoding: raw\n{clock}\n" + (samples or f"01{top}" * 4)
+
+
+TWO = {"a_0001.nrrd": frame("1", 0.5), "a_0002.nrrd": frame("0", 0.75)}
+THREE = {**TWO, "a_0003.nrrd": frame("1", 1.0)}
+GAP = {"a_0001.nrrd": frame("1"), "a_0002.nrrd": frame("0"), "a_0004.nrrd": frame("1")}
+
+# 3 x 2 x 2 x 2 floats 0 1 1 0 1 1 …, the second replaced by NaN.
+NAN_FILE = (
+    "printf 'NRRD0004\\ntype: float\\ndimension: 4\\nsizes: 3 2 2 2\\nendian: little\\nencoding: raw\\n\\n' > n.nrrd; "
+    "zero='\\0\\0\\0\\0' one='\\0\\0\\200\\077' nan='\\0\\0\\300\\177'; "
+    "printf \"$zero$nan$one\" >> n.nrrd; for i in 1 2 3 4 5 6 7; do printf \"$zero$one$one\" >> n.nrrd; done; "
+)
+
+CASES = [
+    {
+        "name": "a dam break, validated",
+        "shell": "tet4d-mc {data}/dambreak --iso 0.5 -o dam.t4h -q && tet4d-info --validate --json dam.t4h",
+        "json": {
+            "valid": True,
+            "counts.frames": 33,
+            "counts.tets": {"at_least": 1000000},
+            "provenance.options.iso": 0.5,
+            "provenance.options.split": "hull",
+        },
+        "needs": ["tet4d-mc", "tet4d-info"],
+        "timeout": 300,
+    },
+    {
+        "name": "statistics count what they name",
+        "run": ["tet4d-mc", "a_0001.nrrd", "a_0002.nrrd", "a_0003.nrrd", "--iso", "48.5", "-o", "x.t4h", "--stats", "s.json"],
+        "prepare": THREE,
+        "json_file": {
+            "s.json": {
+                "program": "tet4d-mc",
+                "counts.frames": 3,
+                "counts.voxels": 36,
+                # The step from 48 to 49 crosses the left cell of both slabs, the flickering end the right one.
+                "counts.active_cells": 4,
+                "counts.vertices": {"at_least": 1},
+                "counts.tets": {"at_least": 1},
+                "counts.masked_cells": 0,
+                "phases.0.name": "read",
+                "phases.1.name": "extract",
+                "phases.2.name": "write",
+            }
+        },
+        "stderr": ["3 frames -> "],
+    },
+    {
+        "name": "the same bytes for any thread count and way to name the frames",
+        "shell": "tet4d-mc a_0001.nrrd a_0002.nrrd a_0003.nrrd --iso 48.5 -j 1 -q -o one.t4h && "
+        "tet4d-mc . --iso 48.5 -j 3 -q -o three.t4h && cmp one.t4h three.t4h && "
+        "tet4d-mc a_%04d.nrrd --iso 48.5 -q -o pattern.t4h && cmp one.t4h pattern.t4h",
+        "prepare": THREE,
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "kuhn is the same surface in more pieces",
+        "shell": "frames='{data}/dambreak/alpha_0008.nrrd {data}/dambreak/alpha_0009.nrrd'; "
+        "tet4d-mc $frames --iso 0.5 --split kuhn -q -o kuhn.t4h; tet4d-mc $frames --iso 0.5 -q -o hull.t4h; "
+        "test $(stat -c %s kuhn.t4h) -ge $((4 * $(stat -c %s hull.t4h))); tet4d-info --json kuhn.t4h",
+        "json": {"provenance.options.split": "kuhn"},
+        "needs": ["tet4d-mc", "tet4d-info"],
+    },
+    {
+        "name": "one frame is not enough",
+        "run": ["tet4d-mc", "a_0001.nrrd", "--iso", "48.5", "-o", "x.t4h"],
+        "prepare": TWO,
+        "exit": 3,
+        "stderr": ["a_0001.nrrd", "two"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "a flat grid is refused",
+        "run": ["tet4d-mc", "f1.nrrd", "f2.nrrd", "--iso", "48.5", "-o", "x.t4h"],
+        "prepare": {"f1.nrrd": frame("1", sizes="3 4 1"), "f2.nrrd": frame("0", sizes="3 4 1")},
+        "exit": 3,
+        "stderr": ["axis z", "1 sample"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "an isovalue outside the range gives a valid empty file and says so",
+        "shell": "tet4d-mc a_%04d.nrrd --iso 200 -o x.t4h && tet4d-info --validate --json x.t4h",
+        "prepare": TWO,
+        "stderr": ["the hypermesh is empty: isovalue 200, samples from 48 to 49"],
+        "json": {"valid": True, "counts.tets": 0, "counts.vertices": 0},
+        "needs": ["tet4d-mc", "tet4d-info"],
+    },
+    {
+        "name": "the isovalue must be given",
+        "run": ["tet4d-mc", "a_0001.nrrd", "a_0002.nrrd", "-o", "x.t4h"],
+        "prepare": TWO,
+        "exit": 2,
+        "stderr": ["--iso"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "an isovalue that is no number",
+        "run": ["tet4d-mc", "a_0001.nrrd", "a_0002.nrrd", "--iso", "nan", "-o", "x.t4h"],
+        "prepare": TWO,
+        "exit": 2,
+        "stderr": ["--iso"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "a misspelt split names the nearest",
+        "run": ["tet4d-mc", "a_0001.nrrd", "a_0002.nrrd", "--iso", "1", "--split", "hul", "-o", "x.t4h"],
+        "prepare": TWO,
+        "exit": 2,
+        "stderr": ["hul", "hull"],
+    },
+    {
+        "name": "a dry run plans and writes nothing",
+        "run": ["tet4d-mc", "a_0001.nrrd", "a_0002.nrrd", "--iso", "48.5", "-o", "x.t4h", "--dry-run"],
+        "prepare": TWO,
+        "stdout": ["passes 1\n", "peak_memory_bytes ", "temporary_bytes 0\n", "output_bytes_at_least ", "output_bytes_at_most "],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "an existing file is kept",
+        "run": ["tet4d-mc", "a_0001.nrrd", "a_0002.nrrd", "--iso", "48.5", "-o", "x.t4h"],
+        "prepare": {**TWO, "x.t4h": "mine"},
+        "exit": 1,
+        "stderr": ["x.t4h", "--force"],
+        "file": {"x.t4h": "mine"},
+    },
+    {
+        "name": "a hypermesh cannot go to a pipe",
+        "run": ["tet4d-mc", "a_0001.nrrd", "a_0002.nrrd", "--iso", "48.5", "-o", "-"],
+        "prepare": TWO,
+        "exit": 2,
+        "stderr": ["pipe"],
+        "absent": ["-"],
+    },
+    {
+        "name": "too little memory says how much is needed",
+        "run": ["tet4d-mc", "{data}/dambreak", "--iso", "0.5", "-o", "x.t4h", "--memory", "1M"],
+        "exit": 4,
+        "stderr": ["--memory"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "runs inside the memory it was given",
+        "run": ["tet4d-mc", "{data}/dambreak", "--iso", "0.5", "-o", "x.t4h", "--memory", "16M", "-j", "1", "-q"],
+        # The program's own data and the memory allocator's slack come on top.
+        "limits": {"data": 28 << 20},
+    },
+    {
+        "name": "a full disk leaves nothing behind",
+        "run": ["tet4d-mc", "{data}/dambreak", "--iso", "0.5", "-o", "x.t4h"],
+        "limits": {"fsize": 1 << 20},
+        "exit": 4,
+        "stderr": ["x.t4h"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "an interrupt leaves nothing behind",
+        "run": ["tet4d-mc", "{data}/dambreak", "--iso", "0.5", "--split", "kuhn", "-j", "1", "-o", "x.t4h", "--progress", "json"],
+        "interrupt": {"when": "extract", "signal": "INT"},
+        "exit": 1,
+        "stderr": ["nterrupt"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "nan outside",
+        "shell": NAN_FILE + "tet4d-mc n.nrrd --iso 0.5 -o x.t4h --stats s.json && tet4d-info --validate --json x.t4h",
+        "stderr": ["1 samples are NaN: taken as outside"],
+        "json": {"valid": True, "inner_boundary": False},
+        "json_file": {"s.json": {"counts.nan_samples": 1, "counts.masked_cells": 0}},
+        "needs": ["tet4d-mc", "tet4d-info"],
+    },
+    {
+        "name": "nan mask",
+        "shell": NAN_FILE + "tet4d-mc n.nrrd --iso 0.5 --nan mask -o x.t4h --stats s.json && tet4d-info --validate --json x.t4h",
+        "stderr": ["2 hypercubes that touch one left out"],
+        "json": {"valid": True, "inner_boundary": True, "counts.tets": 0},
+        "json_file": {"s.json": {"counts.nan_samples": 1, "counts.masked_cells": 2}},
+        "needs": ["tet4d-mc", "tet4d-info"],
+    },
+    {
+        "name": "nan error",
+        "shell": NAN_FILE + "tet4d-mc n.nrrd --iso 0.5 --nan error -o x.t4h",
+        "exit": 3,
+        "stderr": ["n.nrrd", "frame 0, sample 1 0 0", "is NaN", "--nan mask"],
+        "absent": ["x.t4h"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "times from a list and from a file are the same",
+        "shell": "tet4d-mc a_%04d.nrrd --iso 48.5 --times 10,12.5 -q -o list.t4h && "
+        "tet4d-mc a_%04d.nrrd --iso 48.5 --times times.txt -q -o file.t4h && cmp list.t4h file.t4h && "
+        "tet4d-info --json file.t4h",
+        "prepare": {**TWO, "times.txt": "10\n12.5\n"},
+        "json": {"times.first": 10, "times.last": 12.5},
+        "needs": ["tet4d-mc", "tet4d-info"],
+    },
+    {
+        "name": "too few times",
+        "run": ["tet4d-mc", "a_0001.nrrd", "a_0002.nrrd", "--iso", "48.5", "--times", "3", "-o", "x.t4h"],
+        "prepare": TWO,
+        "exit": 2,
+        "stderr": ["1", "2"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "times that are no numbers",
+        "run": ["tet4d-mc", "a_0001.nrrd", "a_0002.nrrd", "--iso", "48.5", "--times", "1,soon", "-o", "x.t4h"],
+        "prepare": TWO,
+        "exit": 2,
+        "stderr": ["--times", "soon"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "a hole in the numbering is refused",
+        "run": ["tet4d-mc", "a_%04d.nrrd", "--iso", "48.5", "-o", "x.t4h"],
+        "prepare": GAP,
+        "exit": 3,
+        "stderr": ["number 3 is missing", "--allow-gaps"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "a hole in the numbering is accepted on request",
+        "run": ["tet4d-mc", "a_%04d.nrrd", "--iso", "48.5", "-o", "x.t4h", "--allow-gaps", "--depfile", "x.d"],
+        "prepare": GAP,
+        "file": {"x.d": ["x.t4h:", "a_0001.nrrd", "a_0002.nrrd", "a_0004.nrrd"]},
+    },
+]
