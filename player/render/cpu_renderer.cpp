@@ -45,6 +45,20 @@ void addFlat(const scene::DrawList& list, const PageSlice& slice, Raster& raster
   }
 }
 
+// The walls behind everything, in a raster of their own; a wall's colour stands in place of its normal.
+Raster panelRaster(const scene::DrawList& list, std::uint32_t width, std::uint32_t height) {
+  Raster raster(width, height, false);
+  for (const scene::DrawPanel& panel : list.panels) {
+    std::array<RasterVertex, 4> corners{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      corners[k] = {list.relative_to_clip * glm::vec4(panel.corners[k], 1), panel.corners[k], panel.color};
+    }
+    raster.add(corners[0], corners[1], corners[2]);
+    raster.add(corners[0], corners[2], corners[3]);
+  }
+  return raster;
+}
+
 void writePixel(std::uint8_t* pixel, const glm::vec3& srgb) {
   for (int c = 0; c < 3; ++c)
     pixel[c] = static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(srgb[c], 0.0f, 1.0f)));
@@ -52,7 +66,8 @@ void writePixel(std::uint8_t* pixel, const glm::vec3& srgb) {
 }
 
 // Shades the rows of one band; image rows run from the top, the raster's from the bottom.
-void shadeRows(const scene::DrawList& list, const Raster& raster, unsigned band, unsigned bands, Image& image) {
+void shadeRows(const scene::DrawList& list, const Raster& raster, const Raster& panels, unsigned band, unsigned bands,
+               Image& image) {
   for (std::uint32_t y = 0; y < image.height; ++y) {
     if (y / Raster::kBand % bands != band) continue;
     const float height = (static_cast<float>(y) + 0.5f) / static_cast<float>(image.height);
@@ -61,7 +76,8 @@ void shadeRows(const scene::DrawList& list, const Raster& raster, unsigned band,
     for (std::uint32_t x = 0; x < image.width; ++x) {
       const std::uint32_t id = raster.visible(x, y);
       if (id == kNothing) {
-        writePixel(row + std::size_t{4} * x, behind);
+        const std::uint32_t panel = panels.visible(x, y);
+        writePixel(row + std::size_t{4} * x, panel == kNothing ? behind : panels.sampleAt(panel, x, y).normal);
       } else {
         const Raster::Sample sample = raster.sampleAt(id, x, y);
         writePixel(row + std::size_t{4} * x, shade(list, sample.position, sample.normal, sample.front));
@@ -86,10 +102,12 @@ class CpuRenderer final : public Renderer {
       slicer_.slice(*page, item.first, item.count, list.t, list.last_t, slice_);
       list.smooth ? addSmooth(list, slice_, raster) : addFlat(list, slice_, raster);
     }
+    Raster panels = panelRaster(list, image.width, image.height);
     // Rows of different bands share nothing, so the picture is the same for any number of threads.
     const auto drawBand = [&](unsigned band) {
       raster.resolveRows(band, threads_);
-      shadeRows(list, raster, band, threads_, image);
+      panels.resolveRows(band, threads_);
+      shadeRows(list, raster, panels, band, threads_, image);
     };
     std::vector<std::jthread> helpers;
     for (unsigned band = 1; band < threads_; ++band) helpers.emplace_back(drawBand, band);

@@ -46,13 +46,15 @@ Status checkFramebuffer(const char* what, GLsizei width, GLsizei height) {
 }
 
 struct Programs {
-  GlProgram background, accumulate, smooth, flat;
+  GlProgram background, panel, accumulate, smooth, flat;
 };
 
 Result<Programs> makePrograms() {
   Programs programs;
   auto background = GlProgram::link("background", "", shaders::kBackgroundVert, shaders::kBackgroundFrag);
   if (!background.ok()) return background.fault();
+  auto panel = GlProgram::link("panel", "", shaders::kPanelVert, shaders::kPanelFrag);
+  if (!panel.ok()) return panel.fault();
   auto accumulate =
       GlProgram::link("dyntri, normals", "#define ACCUMULATE\n", shaders::kDyntriVert, shaders::kNormalsFrag);
   if (!accumulate.ok()) return accumulate.fault();
@@ -61,6 +63,7 @@ Result<Programs> makePrograms() {
   auto flat = GlProgram::link("dyntri, flat", "#define FLAT\n", shaders::kDyntriVert, shaders::kPhongFrag);
   if (!flat.ok()) return flat.fault();
   programs.background = std::move(background).value();
+  programs.panel = std::move(panel).value();
   programs.accumulate = std::move(accumulate).value();
   programs.smooth = std::move(smooth).value();
   programs.flat = std::move(flat).value();
@@ -149,6 +152,15 @@ class GlRenderer final : public Renderer {
     programs_.background.set("top", list.background_top);
     programs_.background.set("bottom", list.background_bottom);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    programs_.panel.use();
+    programs_.panel.set("relative_to_clip", list.relative_to_clip);
+    for (const scene::DrawPanel& panel : list.panels) {
+      programs_.panel.set("panel_color", panel.color);
+      for (std::size_t k = 0; k < 4; ++k) {
+        programs_.panel.set(("corners[" + std::to_string(k) + "]").c_str(), panel.corners[k]);
+      }
+      glDrawArrays(GL_TRIANGLE_FAN, 0, 4);
+    }
   }
 
   void bindTarget() {

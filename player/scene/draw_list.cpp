@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/ext/matrix_clip_space.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
@@ -68,6 +69,29 @@ glm::vec3 linearOf(const glm::dvec3& srgb) {
   return {srgbToLinear(srgb.x), srgbToLinear(srgb.y), srgbToLinear(srgb.z)};
 }
 
+// The walls of the box whose inner side the viewer sees. Of a convex body these never hide one another.
+std::vector<DrawPanel> panelsOf(const WorldBox& box, const glm::dvec3& color, const DrawList& camera) {
+  std::vector<DrawPanel> panels;
+  const glm::dvec3 viewer(camera.eye_or_backward);
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const unsigned u = 1u << (axis + 1) % 3, v = 1u << (axis + 2) % 3;
+    for (const unsigned side : {0u, 1u << axis}) {
+      const std::array<glm::dvec3, 4> corners{box.corners[side], box.corners[side | u], box.corners[side | u | v],
+                                              box.corners[side | v]};
+      glm::dvec3 outward = glm::cross(corners[1] - corners[0], corners[3] - corners[0]);
+      if (glm::dot(outward, corners[0] + corners[2]) < 0) outward = -outward;
+      const glm::dvec3 to_viewer = camera.perspective ? viewer - corners[0] : viewer;
+      if (!(glm::dot(outward, to_viewer) < 0)) continue;  // seen from outside, or no area
+      // A little shade tells floor and walls apart.
+      const glm::dvec3 n = glm::abs(glm::normalize(outward));
+      DrawPanel panel{{}, glm::vec3(color * (1 - 0.05 * n.z - 0.025 * n.y))};
+      std::copy(corners.begin(), corners.end(), panel.corners.begin());
+      panels.push_back(panel);
+    }
+  }
+  return panels;
+}
+
 }  // namespace
 
 DrawList makeDrawList(const WorldBox& box, const Shot& shot, const Format& format, bool smooth) {
@@ -100,6 +124,7 @@ DrawList makeDrawList(const WorldBox& box, const Shot& shot, const Format& forma
   list.shininess = static_cast<float>(shot.material.shininess);
   list.background_top = glm::vec3(shot.background.top);
   list.background_bottom = glm::vec3(shot.background.bottom);
+  if (shot.background.room) list.panels = panelsOf(box, *shot.background.room, list);
   return list;
 }
 

@@ -4,6 +4,7 @@
 // same picture. All lengths are world units, all colours linear except where said.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
@@ -25,6 +26,12 @@ struct Format {
 struct DrawLight {
   glm::vec3 toward;  // unit vector from the surface to the light
   glm::vec3 color;
+};
+
+// A wall of the box seen from inside: a plane quadrilateral of one colour, unlit.
+struct DrawPanel {
+  std::array<glm::vec3, 4> corners;  // relative to the box's centre, around the quadrilateral
+  glm::vec3 color;                   // sRGB
 };
 
 // A run of one page's triangles; all triangles alive at t that the page has lie within it.
@@ -53,6 +60,8 @@ struct DrawList {
   glm::vec3 front_color{0}, back_color{0};
   float specular = 0, shininess = 1;
   glm::vec3 background_top{0}, background_bottom{0};  // sRGB: the gradient runs in the encoded values
+
+  std::vector<DrawPanel> panels;  // behind everything, over the gradient; they do not overlap
 
   float t = 0, last_t = 0;  // frames
   std::vector<DrawItem> items;

@@ -32,13 +32,15 @@ struct Light {
 
 struct Material {
   glm::dvec3 color{0.23, 0.54, 0.74};       // sRGB, of the side that faces out of the inside set
-  glm::dvec3 back_color{0.14, 0.35, 0.50};  // sRGB, of the other side
+  glm::dvec3 back_color{0.27, 0.47, 0.60};  // sRGB, of the other side
   double specular = 0.25;                   // linear, >= 0
   double shininess = 48;                    // exponent of Phong's highlight, >= 1
 };
 
 struct Background {
   glm::dvec3 top{0.97, 0.975, 0.98}, bottom{0.80, 0.83, 0.86};  // sRGB, a vertical gradient
+  // sRGB: the far walls and the floor of the data's box, behind everything; without: nothing but the gradient.
+  std::optional<glm::dvec3> room = glm::dvec3(0.88, 0.90, 0.915);
 };
 
 struct Shot {

@@ -197,12 +197,19 @@ void readBackground(ObjectReader& reader, Background& background) {
   if (value->is_array()) {
     reader.srgb("background", background.top);
     background.bottom = background.top;
+    background.room.reset();
     return;
   }
   ObjectReader inner = reader.inner(*value, "background");
-  if (!inner.accepts({"top", "bottom"})) return;
+  if (!inner.accepts({"top", "bottom", "room"})) return;
   inner.srgb("top", background.top);
   inner.srgb("bottom", background.bottom);
+  if (const Json* room = inner.find("room")) {
+    if (*room == false) return background.room.reset();
+    glm::dvec3 color(0);
+    inner.vectorAt(*room, "room", color, 0, 1, "three numbers [r, g, b] between 0 and 1, or false");
+    background.room = color;
+  }
 }
 
 Json toJson(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
@@ -270,6 +277,7 @@ std::string formatShot(const Shot& shot) {
                       {"specular", shot.material.specular},
                       {"shininess", shot.material.shininess}};
   json["background"] = {{"top", toJson(shot.background.top)}, {"bottom", toJson(shot.background.bottom)}};
+  json["background"]["room"] = shot.background.room ? toJson(*shot.background.room) : Json(false);
   return json.dump(2) + "\n";
 }
 

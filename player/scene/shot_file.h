@@ -6,7 +6,8 @@
 //     "lights": [{"direction": [x,y,z], "color": [r,g,b]}, …],     the way the light travels; linear
 //     "ambient": [r,g,b],                                          linear
 //     "material": {"color": [r,g,b], "back_color": [r,g,b], "specular": 0.25, "shininess": 48},   sRGB
-//     "background": [r,g,b]  |  {"top": [r,g,b], "bottom": [r,g,b]} }                             sRGB
+//     "background": [r,g,b]  |  {"top": [r,g,b], "bottom": [r,g,b], "room": [r,g,b] | false} }    sRGB
+// A background of one colour has no room; "room" is the far walls and the floor of the data's box.
 #pragma once
 
 #include <string>

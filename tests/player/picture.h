@@ -61,7 +61,7 @@ inline void paintSides(scene::Shot& shot) {
   shot.lights.clear();
   shot.material.color = {0, 1, 0};
   shot.material.back_color = {1, 0, 0};
-  shot.background = {{0, 0, 0}, {0, 0, 0}};
+  shot.background = {{0, 0, 0}, {0, 0, 0}, std::nullopt};
 }
 
 struct Sides {

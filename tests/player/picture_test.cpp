@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/trigonometric.hpp>
 #include <numbers>
 
@@ -166,7 +167,7 @@ TEST_P(Picture, NearerSurfaceHidesTheOtherWhateverTheOrder) {
   for (Stage* stage : {&forward, &reverse, &alone}) {
     lookAlongY(stage->shot, {0, 0, 0}, 20);
     stage->shot.lights = {{{1, 1, 0}, {1, 1, 1}}};
-    stage->shot.background = {{0, 0, 0}, {0, 0, 0}};
+    stage->shot.background = {{0, 0, 0}, {0, 0, 0}, std::nullopt};
   }
   // Each file has its own renderer: page numbers name copies.
   auto second = host::makeOffscreenRenderer("cpu", 1, 1u << 30),
@@ -197,7 +198,7 @@ TEST_P(Picture, FlatShadingIsConstantOnATriangle) {
   stage.shot.view.target = {0, 0, 0};
   stage.shot.view.ortho_height = 5;
   stage.shot.material.specular = 0;
-  stage.shot.background = {{0, 0, 0}, {0, 0, 0}};
+  stage.shot.background = {{0, 0, 0}, {0, 0, 0}, std::nullopt};
   const render::Image image = stage.draw(renderer(), 0.5f);
   std::map<std::uint32_t, int> pixels_of;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
@@ -236,11 +237,38 @@ TEST_P(Picture, NearPlaneCutsTheSphereOpen) {
 
 TEST_P(Picture, EmptyListShowsTheBackground) {
   Stage stage(test::writeTestSphere("empty_list.t4d", 2));
-  stage.shot.background = {{1, 1, 1}, {0, 0, 0}};
+  stage.shot.background = {{1, 1, 1}, {0, 0, 0}, std::nullopt};
   const render::Image image = stage.draw(renderer(), -1);
   EXPECT_NEAR(image.row(0)[0], 254, 1);
   EXPECT_NEAR(image.row(199)[0], 1, 1);
   EXPECT_NEAR(image.row(100)[4 * 299], 127, 2);
+}
+
+TEST_P(Picture, RoomShowsTheFarWallsOfTheBoxBehindEverything) {
+  Stage stage(test::writeTestSphere("room.t4d", 2));
+  test::paintSides(stage.shot);
+  const Sides alone = test::countSides(stage.draw(renderer(), 0.5f));
+  stage.shot.background.room = glm::dvec3(0, 0, 1);
+  const scene::DrawList list = stage.list(0.5f);
+  EXPECT_EQ(list.panels.size(), 3u) << "from outside, three walls of a box show their inner side";
+  const render::Image image = stage.draw(renderer(), 0.5f);
+  const Sides with_room = test::countSides(image);
+  EXPECT_EQ(with_room.front, alone.front) << "walls hide nothing";
+  std::uint64_t blue = 0;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) blue += image.rgba[i + 2] > 127 ? 1 : 0;
+  // Each line of sight that meets the box leaves it through one far wall, so walls and sphere fill its outline.
+  double outline = 0;
+  for (const scene::DrawPanel& panel : list.panels) {
+    std::array<glm::dvec2, 4> p;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const glm::dvec4 clip = glm::dmat4(list.relative_to_clip) * glm::dvec4(glm::dvec3(panel.corners[k]), 1);
+      p[k] = glm::dvec2(clip.x / clip.w * 150, clip.y / clip.w * 100);
+    }
+    double twice = 0;
+    for (std::size_t k = 0; k < 4; ++k) twice += p[k].x * p[(k + 1) % 4].y - p[k].y * p[(k + 1) % 4].x;
+    outline += std::abs(twice) / 2;
+  }
+  EXPECT_NEAR(static_cast<double>(blue + with_room.front), outline, 0.01 * outline);
 }
 
 TEST_P(Picture, UnusableFormatsAreFaults) {

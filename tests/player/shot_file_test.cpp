@@ -41,6 +41,7 @@ void expectSame(const Shot& a, const Shot& b) {
   EXPECT_EQ(a.material.shininess, b.material.shininess);
   EXPECT_EQ(a.background.top, b.background.top);
   EXPECT_EQ(a.background.bottom, b.background.bottom);
+  EXPECT_EQ(a.background.room, b.background.room);
 }
 
 TEST(ShotFile, WrittenAndReadBackIsTheSameBitForBit) {
@@ -54,6 +55,7 @@ TEST(ShotFile, WrittenAndReadBackIsTheSameBitForBit) {
   shot = defaults();
   shot.view.ortho_height = 10.0 / 3;
   shot.lights.clear();
+  shot.background.room.reset();
   expectSame(parsed(formatShot(shot)), shot);
 }
 
@@ -69,6 +71,7 @@ TEST(ShotFile, ShortForms) {
   const Shot shot = parsed(R"({"background": [1, 0.5, 0], "material": {"color": [0.1, 0.2, 0.3]}, "ortho_height": 5})");
   EXPECT_EQ(shot.background.top, glm::dvec3(1, 0.5, 0));
   EXPECT_EQ(shot.background.bottom, shot.background.top);
+  EXPECT_FALSE(shot.background.room) << "one colour is one colour";
   EXPECT_EQ(shot.material.back_color, shot.material.color) << "one colour given is both sides' colour";
   EXPECT_EQ(shot.view.ortho_height, 5.0);
 }
@@ -100,6 +103,7 @@ TEST(ShotFile, FaultsNameTheKeyAndTheExpectation) {
       {R"({"material": {"color": [0, 0, 1.5]}})", "material.color", "between 0 and 1"},
       {R"({"material": {"shinyness": 3}})", "material.shinyness", "\"shininess\""},
       {R"({"background": {"top": 1}})", "background.top", "three numbers"},
+      {R"({"background": {"room": true}})", "background.room", "or false"},
       {R"({"eey": [0, 0, 0]})", "eey", "\"eye\""},
       {R"([1, 2])", "", "object"},
   };
