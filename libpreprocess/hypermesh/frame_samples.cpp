@@ -1,12 +1,11 @@
 #include "libpreprocess/hypermesh/frame_samples.h"
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
+
+#include "formats/container.h"
 
 namespace tet4d::hypermesh {
 namespace {
@@ -88,19 +87,9 @@ bool fitsFloat(SampleType type) {
 }
 
 template <class T>
-struct FrameReader<T>::Digest {
-  XXH3_state_t state;
-};
-
-template <class T>
-FrameReader<T>::FrameReader(exchange::FrameSource& source) : source_(source), digest_(std::make_unique<Digest>()) {
+FrameReader<T>::FrameReader(exchange::FrameSource& source) : source_(source), raw_(bytes(source.grid())) {
   static_assert(std::endian::native == std::endian::little, "the digest is over little-endian samples");
-  XXH3_64bits_reset(&digest_->state);
-  raw_.resize(bytes(source.grid()));
 }
-
-template <class T>
-FrameReader<T>::~FrameReader() = default;
 
 template <class T>
 std::uint64_t FrameReader<T>::bytes(const exchange::GridInfo& grid) {
@@ -111,13 +100,13 @@ template <class T>
 void FrameReader<T>::read(std::size_t frame, std::span<T> samples) {
   const std::span<std::byte> into = raw_.empty() ? std::as_writable_bytes(samples) : std::span(raw_);
   source_.readFrame(frame, into);
-  XXH3_64bits_update(&digest_->state, into.data(), into.size());
+  frame_digests_.push_back(container::xxh3(into));
   if (!raw_.empty()) convert(source_.grid().type, std::span<const std::byte>(raw_), samples);
 }
 
 template <class T>
 std::uint64_t FrameReader<T>::digest() const {
-  return XXH3_64bits_digest(&digest_->state);
+  return container::xxh3(std::as_bytes(std::span(frame_digests_)));
 }
 
 template <class T>

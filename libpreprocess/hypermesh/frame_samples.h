@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,22 +27,18 @@ template <class T>
 class FrameReader {
  public:
   explicit FrameReader(exchange::FrameSource& source);
-  ~FrameReader();
-  FrameReader(const FrameReader&) = delete;
-  FrameReader& operator=(const FrameReader&) = delete;
 
   // samples: grid().voxels() numbers.
   void read(std::size_t frame, std::span<T> samples);
-  // XXH3-64 over the samples of all frames read, in the source's type, little-endian.
+  // XXH3-64 over the XXH3-64s (u64) of the frames read, each over its samples in the source's type, little-endian.
   std::uint64_t digest() const;
   // Bytes it holds beside the caller's frames: the frame in the source's type, if that is not T.
   static std::uint64_t bytes(const exchange::GridInfo& grid);
 
  private:
-  struct Digest;
   exchange::FrameSource& source_;
   std::vector<std::byte> raw_;
-  std::unique_ptr<Digest> digest_;
+  std::vector<std::uint64_t> frame_digests_;
 };
 
 // Signs (value >= iso, compared as numbers, not as roundings) and NaNs of a frame, in tasks of one z layer; adds to

@@ -48,7 +48,7 @@ struct Stats {
   std::uint64_t nan_samples = 0;
   double min_value = std::numeric_limits<double>::infinity();  // of samples that are no NaN; min > max: there is none
   double max_value = -std::numeric_limits<double>::infinity();
-  std::uint64_t samples_xxh3 = 0;  // over all frames' samples in the source's type, little-endian
+  std::uint64_t samples_xxh3 = 0;  // over the frames' XXH3s, each over its samples as stored, little-endian
 };
 
 // What a run will need, from the grid alone.
