@@ -127,7 +127,7 @@ def main():
         comparison.programs(options.readers, options.work / "good" / name)
     print("\n".join(comparison.faults))
     print(f"{len(good)} good files, {len(bad)} forged ones, {comparison.checked} checks, {len(comparison.faults)} faults")
-    return 1 if comparison.faults or len(good) < 40 or len(bad) < 100 else 0
+    return 1 if comparison.faults or len(good) < 30 or len(bad) < 100 else 0
 
 
 if __name__ == "__main__":
