@@ -24,7 +24,9 @@ struct HypermeshCheck {
   std::uint64_t misoriented_faces = 0;     // of inner_faces: both tetrahedra induce the same orientation, a fault
   // Without 3-volume: legal, but of no use. (A tetrahedron that names a vertex twice is refused when its page is read.)
   std::uint64_t degenerate_tets = 0;
-  std::uint64_t flat_time_tets = 0;   // all four vertices at one time: a fault
+  // All four vertices at one time: legal, for a surface may jump (a sample that is 0, then 1 in a whole region), but in
+  // no slice.
+  std::uint64_t flat_time_tets = 0;
   std::uint64_t unused_vertices = 0;  // in no tetrahedron: legal, but tells of a wasteful writer
   std::uint64_t most_open_faces = 0;  // largest front carried from one page to the next: what the pass holds
   std::vector<std::string> faults;    // the first few of each kind in words; the counts are exact

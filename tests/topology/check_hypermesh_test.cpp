@@ -167,12 +167,12 @@ TEST_F(CheckHypermesh, TetrahedraWithoutVolumeAreCountedAndLegal) {
   EXPECT_TRUE(check.ok());
 }
 
-TEST_F(CheckHypermesh, ATetrahedronAtOneTimeIsAFault) {
-  const SpaceTimeMesh simplex = testing::simplexBoundary();  // one of its five lies at t = 0
-  const HypermeshCheck check = checked(simplex);
+TEST_F(CheckHypermesh, ATetrahedronAtOneTimeIsCountedAndLegal) {
+  // One of the simplex's five lies at t = 0; marching hypercubes makes such where a whole region changes sign at once.
+  const HypermeshCheck check = checked(testing::simplexBoundary());
   EXPECT_EQ(check.flat_time_tets, 1u);
   EXPECT_EQ(check.inner_faces, 10u);
-  EXPECT_EQ(check.faults.size(), 1u);
+  EXPECT_TRUE(check.ok());
 }
 
 TEST_F(CheckHypermesh, WallsAreThoseOfTheDomain) {
