@@ -2,30 +2,31 @@
 #
 #   X.t4h                   the hypermesh of the isosurface of FRAMES at ISO
 #   X.t4d                   its dynamic triangles, what the player draws
-#   X/contact-sheet.png     the film at TIMES as X/frames/00000.png ..., and all of it on one sheet
+#   X/contact-sheet.png     the film at TIMES as X/frames/00000.png ..., and TILES of its pictures on one sheet
 #   X/film.y4m              the same film as one file
 #   X/slices/slices.pvd     the surface at SLICE_TIMES as VTP files and their index
 #
 #   make -f film.mk FRAMES_DIR=simulation ISO=0.5 out/splash/contact-sheet.png
 #
-# Include it in a makefile of your own to extend it. Times are A:B:STEP, in the unit of the frames' headers, or in frames
-# with an f at the end; a step smaller than a frame is slow motion.
+# Include it in a makefile of your own to extend it. Times are A:B:STEP in the unit of the frames' headers, or with an f
+# after each number in frames: 0f:20f:0.25f is slow motion. Without TIMES there is one picture a frame.
 
 TET4D_BIN   ?=
 FRAMES_DIR  ?= .
 FRAMES      ?= $(sort $(wildcard $(FRAMES_DIR)/*.nrrd $(FRAMES_DIR)/*.nhdr))
 ISO         ?= 0.5
-TIMES       ?= 0:1:0.25f
+TIMES       ?=
 SLICE_TIMES ?= $(TIMES)
 SIZE        ?= 960x540
-COLUMNS     ?= 8
+COLUMNS     ?= 6
+TILES       ?= 24
 CAMERA      ?=
 MC_FLAGS    ?=
 PLAY_FLAGS  ?=
 QUIET       ?= -q
 
 tet4d_program = $(if $(TET4D_BIN),$(TET4D_BIN:%/=%)/)$(1)
-tet4d_camera  = $(if $(CAMERA),--camera $(CAMERA))
+tet4d_view    = --offscreen --size $(SIZE) $(if $(TIMES),--times $(TIMES)) $(if $(CAMERA),--camera $(CAMERA)) $(PLAY_FLAGS)
 
 .DELETE_ON_ERROR:
 # Hypermeshes are worth keeping: the next film starts from them.
@@ -41,16 +42,16 @@ tet4d_camera  = $(if $(CAMERA),--camera $(CAMERA))
 
 %/contact-sheet.png: %.t4d $(CAMERA)
 	@mkdir -p $*/frames && rm -f $*/frames/[0-9]*.png
-	$(call tet4d_program,tet4d-play) $< --offscreen --size $(SIZE) --times $(TIMES) $(tet4d_camera) $(PLAY_FLAGS) \
-	  $(QUIET) --force -o $*/frames/%05d.png --contact-sheet $@ --columns $(COLUMNS)
+	$(call tet4d_program,tet4d-play) $< $(tet4d_view) $(QUIET) --force -o $*/frames/%05d.png \
+	  --contact-sheet $@ --columns $(COLUMNS) --tiles $(TILES)
 
 %/film.y4m: %.t4d $(CAMERA)
 	@mkdir -p $(@D)
-	$(call tet4d_program,tet4d-play) $< --offscreen --size $(SIZE) --times $(TIMES) $(tet4d_camera) $(PLAY_FLAGS) \
-	  $(QUIET) --force --format y4m -o $@
+	$(call tet4d_program,tet4d-play) $< $(tet4d_view) $(QUIET) --force --format y4m -o $@
 
 %/slices/slices.pvd: %.t4h
 	@mkdir -p $(@D)
+	$(if $(SLICE_TIMES),,$(error set SLICE_TIMES, such as 0f:20f:1f))
 	$(call tet4d_program,tet4d-convert) $< --times $(SLICE_TIMES) $(QUIET) --force --depfile $@.d -o $@
 
 # What the programs read beside the files named above (the data of detached headers), from the last run.
