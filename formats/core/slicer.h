@@ -1,8 +1,9 @@
 // The CPU slicer: the triangle mesh M(t) = H ∩ P(t), from tetrahedra or from dynamic triangles.
 //
-// Slice vertices are welded by identity, not by distance: a vertex is the crossing of an edge (a, b), or, when t is exactly
-// the time of an end, that end itself. A triangle two of whose corners are the same vertex is dropped. So a slice at a
-// frame's time is the hull table's marching cubes of that frame, vertex for vertex, and slices between are closed.
+// Slice vertices are welded by identity, not by distance: a vertex is the crossing of an edge (a, b), or, when t is
+// exactly the time of an end, that end itself. A triangle two of whose corners are the same vertex is dropped. So a
+// slice at a frame's time is the hull table's marching cubes of that frame, vertex for vertex, and slices between are
+// closed.
 #pragma once
 
 #include <array>

@@ -6,8 +6,8 @@
 
 namespace tet4d::outofcore {
 
-// A builder calls step() between tasks. The tools' implementation draws a bar or prints lines (tools/common/progress.h);
-// the base class only notices interrupts.
+// A builder calls step() between tasks. The tools' implementation draws a bar or prints lines
+// (tools/common/progress.h); the base class only notices interrupts.
 class Progress {
  public:
   virtual ~Progress() = default;
