@@ -99,7 +99,7 @@ struct Symmetry {
       out.edges |= 1u << edge[static_cast<std::size_t>(std::countr_zero(rest))];
     for (std::size_t axis = 0; axis < 4; ++axis) {
       const std::size_t to = axis_to[axis];
-      out.normal[to] = static_cast<std::int8_t>(flips >> to & 1u ? -facet.normal[axis] : facet.normal[axis]);
+      out.normal[to] = static_cast<std::int16_t>(flips >> to & 1u ? -facet.normal[axis] : facet.normal[axis]);
     }
     return out;
   }
@@ -151,8 +151,8 @@ std::vector<HullFacet> hullFacets(unsigned configuration) {
       continue;
     if (!spansThreeDimensions(on)) continue;
     facets.push_back({on,
-                      {static_cast<std::int8_t>(normal[0]), static_cast<std::int8_t>(normal[1]),
-                       static_cast<std::int8_t>(normal[2]), static_cast<std::int8_t>(normal[3])}});
+                      {static_cast<std::int16_t>(normal[0]), static_cast<std::int16_t>(normal[1]),
+                       static_cast<std::int16_t>(normal[2]), static_cast<std::int16_t>(normal[3])}});
   }
   sortByEdges(facets);
   return facets;

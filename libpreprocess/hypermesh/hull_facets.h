@@ -23,8 +23,8 @@ std::span<const EdgeDirection> hullDirections();
 
 // A facet of the hull that is not in a wall: all its points are edge midpoints.
 struct HullFacet {
-  std::uint32_t edges;                // bit e: the midpoint of edge e is a vertex of the facet
-  std::array<std::int8_t, 4> normal;  // primitive, out of the hull: x, y, z, t
+  std::uint32_t edges;                 // bit e: the midpoint of edge e is a vertex of the facet
+  std::array<std::int16_t, 4> normal;  // primitive, out of the hull: x, y, z, t
   friend bool operator==(const HullFacet&, const HullFacet&) = default;
 };
 

@@ -37,7 +37,7 @@ std::uint8_t lowest(std::uint32_t edges) {
 
 bool has(std::uint32_t edges, std::uint8_t e) { return edges >> e & 1u; }
 
-CellTet oriented(CellTet tet, const std::array<std::int8_t, 4>& normal) {
+CellTet oriented(CellTet tet, const std::array<std::int16_t, 4>& normal) {
   const auto a = doubledMidpoint(hullEdges()[tet[0]]);
   std::array<std::array<int, 4>, 4> rows{};
   for (std::size_t i = 0; i < 4; ++i) rows[0][i] = normal[i];

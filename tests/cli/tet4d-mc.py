@@ -65,8 +65,8 @@ CASES = [
         "name": "kuhn is the same surface in more pieces",
         "shell": "frames='{data}/dambreak/alpha_0008.nrrd {data}/dambreak/alpha_0009.nrrd'; "
         "tet4d-mc $frames --iso 0.5 --split kuhn -q -o kuhn.t4h; tet4d-mc $frames --iso 0.5 -q -o hull.t4h; "
-        "test $(stat -c %s kuhn.t4h) -ge $((4 * $(stat -c %s hull.t4h))); tet4d-info --json kuhn.t4h",
-        "json": {"provenance.options.split": "kuhn"},
+        "test $(stat -c %s kuhn.t4h) -ge $((4 * $(stat -c %s hull.t4h))); tet4d-info --validate --json kuhn.t4h",
+        "json": {"valid": True, "provenance.options.split": "kuhn"},
         "needs": ["tet4d-mc", "tet4d-info"],
     },
     {
