@@ -25,11 +25,15 @@ Fault writeFault(const std::string& path, const char* doing, int error) {
       full ? "free some space or write elsewhere; nothing was left behind" : "check the folder and its permissions"};
 }
 
-// The permissions a plain open() would have given.
-mode_t creationMode() {
-  const mode_t mask = umask(0);
-  umask(mask);
-  return static_cast<mode_t>(0666 & ~mask);
+// A new file beside `path`, with the permissions any new file gets; its name in `name`. Negative: errno says why.
+int createBeside(const std::string& path, std::string& name) {
+  // Files of runs that were killed may still be there: take the first free number.
+  for (int number = 0; number < 1000; ++number) {
+    name = path + ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(number);
+    const int fd = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd >= 0 || errno != EEXIST) return fd;
+  }
+  return -1;
 }
 
 }  // namespace
@@ -84,11 +88,10 @@ Result<Writer> Writer::create(const std::string& path, std::uint32_t payload, st
   auto state = std::make_unique<State>();
   state->path = path;
   state->force = force;
-  std::string name = path + ".partial-XXXXXX";
-  state->fd = ::mkostemp(name.data(), O_CLOEXEC);
+  std::string name;
+  state->fd = createBeside(path, name);
   if (state->fd < 0) return writeFault(path, "create", errno);
   state->temporary = name;
-  ::fchmod(state->fd, creationMode());
   std::memcpy(state->header.magic, kMagic, sizeof kMagic);
   state->header.endian_mark = 0x01020304;
   state->header.container_version = kContainerVersion;
@@ -178,5 +181,7 @@ Status Writer::close() {
 }
 
 std::uint64_t Writer::bytesWritten() const { return state_->position; }
+
+const std::string& Writer::path() const { return state_->path; }
 
 }  // namespace tet4d::container

@@ -158,6 +158,7 @@ class Writer {
   // file.
   Status close();
   std::uint64_t bytesWritten() const;
+  const std::string& path() const;  // the final name
 
  private:
   struct State;

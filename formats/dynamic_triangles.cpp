@@ -179,7 +179,7 @@ Result<Writer> Writer::create(const std::string& path, const Header& header, std
 
 Status Writer::addPage(const PageView& page, std::uint64_t tets, std::uint64_t empty) {
   if (page.lifespans.size() != page.triangles.size()) {
-    return Fault{FaultCode::kUsage, "", "page " + std::to_string(pages_->entries().size()),
+    return Fault{FaultCode::kUsage, file_->path(), "page " + std::to_string(pages_->entries().size()),
                  "there must be one lifespan a triangle", ""};
   }
   const PageHeader head{page.vertices.size(), page.edges.size(), page.triangles.size(), {}};

@@ -104,7 +104,7 @@ Result<Writer> Writer::create(const std::string& path, const GridHeader& header,
 Status Writer::addFrame(std::span<const std::byte> samples) {
   const std::size_t k = pages_->entries().size();
   if (k == times_.size() || samples.size() != checkedFrameBytes(header_)) {
-    return Fault{FaultCode::kUsage, "", "frame " + std::to_string(k),
+    return Fault{FaultCode::kUsage, file_->path(), "frame " + std::to_string(k),
                  std::to_string(samples.size()) + " bytes, expected " + std::to_string(checkedFrameBytes(header_)) +
                      " for each of " + std::to_string(times_.size()) + " frames",
                  ""};
@@ -114,7 +114,7 @@ Status Writer::addFrame(std::span<const std::byte> samples) {
 
 Status Writer::close(const std::string& provenance_json) {
   if (pages_->entries().size() != times_.size()) {
-    return Fault{FaultCode::kUsage, "", "section TIME",
+    return Fault{FaultCode::kUsage, file_->path(), "section TIME",
                  std::to_string(pages_->entries().size()) + " frames for " + std::to_string(times_.size()) + " times",
                  "give one time a frame"};
   }

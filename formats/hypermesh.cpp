@@ -308,7 +308,7 @@ Status Writer::addPage(std::span<const Vec4f> vertices, std::span<const Run> run
                        const Bounds4f& bounds, std::span<const std::span<const float>> columns) {
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     if (columns.size() != columns_.size() || columns[c].size() != vertices.size() * columns_[c].components) {
-      return Fault{FaultCode::kUsage, "", "page " + std::to_string(pages_->entries().size()),
+      return Fault{FaultCode::kUsage, file_->path(), "page " + std::to_string(pages_->entries().size()),
                    "the columns do not fit the vertices", ""};
     }
   }

@@ -168,7 +168,7 @@ Status PageWriter::begin() { return writer_->beginPages(kPages, container::kSect
 Status PageWriter::add(std::span<const std::byte> raw, PageEntry entry) {
   assert(!raw.empty());
   if (raw.size() > kMaxPageBytes) {
-    return Fault{FaultCode::kBadInput, "", "page " + std::to_string(entries_.size()),
+    return Fault{FaultCode::kBadInput, writer_->path(), "page " + std::to_string(entries_.size()),
                  std::to_string(raw.size()) + " bytes, a page may have " + std::to_string(kMaxPageBytes),
                  "cut the data into more pages"};
   }
@@ -179,12 +179,12 @@ Status PageWriter::add(std::span<const std::byte> raw, PageEntry entry) {
     encoded_.resize(ZSTD_compressBound(raw.size()));
     const std::size_t n = ZSTD_compress(encoded_.data(), encoded_.size(), raw.data(), raw.size(), kZstdLevel);
     if (ZSTD_isError(n) != 0U) {
-      return Fault{FaultCode::kOutOfMemory, "", "page " + std::to_string(entries_.size()), ZSTD_getErrorName(n),
-                   "write with --page-codec raw"};
+      return Fault{FaultCode::kOutOfMemory, writer_->path(), "page " + std::to_string(entries_.size()),
+                   ZSTD_getErrorName(n), "write with --page-codec raw"};
     }
     stored = std::span<const std::byte>(encoded_).first(n);
 #else
-    return Fault{FaultCode::kNotBuilt, "", "", "this build cannot compress pages",
+    return Fault{FaultCode::kNotBuilt, writer_->path(), "", "this build cannot compress pages",
                  "rebuild with TET4D_WITH_ZSTD=ON, or use --page-codec raw"};
 #endif
   }

@@ -125,7 +125,8 @@ class DynamicTriangles:
                 "counts": dict(zip(names, self.sums), tets=self.tets, frames=self.frames, empty=self.empty,
                                pages=len(self.content)),
                 "bounds": {"min": self.bounds[:4], "max": self.bounds[4:]}, "bytes": len(self.container.data),
-                "provenance": self.container.provenance(), "digest": t4.digest(self.dump())}
+                "provenance": self.container.provenance(), "page_digest": self.pages.digest(),
+                "digest": t4.digest(self.dump())}
 
 
 class More:

@@ -62,7 +62,8 @@ class Grid4:
         return {"payload": "GRD4", "version": self.container.payload_version,
                 "counts": {"frames": self.frames, "voxels": self.voxels}, "sample_type": self.sample_type,
                 "bounds": {"min": [0, 0, 0, 0], "max": last}, "bytes": len(self.container.data),
-                "provenance": self.container.provenance(), "digest": t4.digest(self.dump())}
+                "provenance": self.container.provenance(), "page_digest": self.pages.digest(),
+                "digest": t4.digest(self.dump())}
 
 
 if __name__ == "__main__":

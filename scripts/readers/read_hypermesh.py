@@ -201,7 +201,8 @@ class Hypermesh:
                            "pages": len(self.geometry)},
                 "columns": [column.name for column in self.columns],
                 "bounds": {"min": self.bounds[:4], "max": self.bounds[4:]}, "bytes": len(self.container.data),
-                "provenance": self.container.provenance(), "digest": t4.digest(self.dump())}
+                "provenance": self.container.provenance(), "page_digest": self.pages.digest(),
+                "digest": t4.digest(self.dump())}
 
 
 class More:

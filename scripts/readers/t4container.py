@@ -237,6 +237,11 @@ class Pages:
             end = entry.offset + entry.bytes
         require(not any(self.container.data[end:self.section.end]), "section PAGE", "padding at its end is not zero")
 
+    def digest(self):
+        """Of the decoded pages in order: the checksum of their checksums."""
+        sums = [xxh3(self.load(number)) for number in range(len(self.entries))]
+        return "%016x" % xxh3(struct.pack(f"<{len(sums)}Q", *sums))
+
 
 def cut_parts(data, place, sizes):
     """A page's parts, one behind the other, each padded with zeros to 64 bytes; nothing may follow the last."""

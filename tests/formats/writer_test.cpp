@@ -146,6 +146,17 @@ TEST_F(FullDisk, TheOldFileSurvives) {
   EXPECT_EQ(scratch.names().size(), 1u);
 }
 
+TEST(Writer, LeftoversOfAKilledRunAreInNobodysWay) {
+  Scratch scratch;
+  const std::string path = scratch.path("a");
+  auto first = create(path, false), second = create(path, false);
+  ASSERT_TRUE(first.ok() && second.ok()) << "two temporary files beside one name";
+  EXPECT_EQ(scratch.names().size(), 2u);
+  EXPECT_EQ(first.value().path(), path);
+  ASSERT_TRUE(first.value().close().ok());
+  EXPECT_FALSE(second.value().close().ok()) << "the name is taken by then";
+}
+
 TEST(GridWriter, RefusesWhatReadersWould) {
   Scratch scratch;
   const std::string path = scratch.path("g.t4g");
@@ -177,7 +188,9 @@ TEST(GridWriter, RefusesWhatReadersWould) {
   ASSERT_TRUE(writer.ok());
   EXPECT_FALSE(writer.value().addFrame(std::vector<std::byte>(7)).ok());
   EXPECT_TRUE(writer.value().addFrame(std::vector<std::byte>(8)).ok());
-  EXPECT_FALSE(writer.value().close("{}").ok()) << "a frame is missing";
+  const Status early = writer.value().close("{}");
+  ASSERT_FALSE(early.ok()) << "a frame is missing";
+  EXPECT_EQ(early.fault().file, path);
 }
 
 TEST(HypermeshWriter, RefusesWhatReadersWould) {

@@ -42,6 +42,8 @@ class Comparison:
         expected = pathlib.Path(f"{path}.dump").read_text(encoding="utf-8")
         self.same_lines(path, "dump", lines, expected.splitlines())
         self.expect(self.t4.digest(lines) == self.t4.xxhash.xxh3_64_hexdigest(expected.encode()), path, "digest differs")
+        pages = pathlib.Path(f"{path}.pages").read_text()
+        self.expect(payload.pages.digest() == pages, path, f"page digest {payload.pages.digest()}, C++ {pages}")
         if path.suffix == ".t4h":
             try:
                 self.slices(path, payload)

@@ -1,6 +1,6 @@
 // Writes, into a folder, every sample file, odd but legal variants of each and every forged one, and beside each good
-// file what the C++ reader understands: FILE.dump, and FILE.slices for a hypermesh. compare.py holds the Python readers
-// to it.
+// file what the C++ reader understands: FILE.dump, FILE.pages, and FILE.slices for a hypermesh. compare.py holds the
+// Python readers to it.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -33,7 +33,9 @@ constexpr float kTimes[] = {-1, 0, 0.25f, 0.5f, 0.6f, 0.75f, 1, 1.3f, 2, 3};
 bool describe(const std::string& path, std::uint32_t payload) {
   auto dump = test::dumpOf(path, payload);
   if (!dump.ok()) return say(dump.fault());
-  if (!writeText(path + ".dump", dump.value())) return false;
+  auto pages = test::pageDigestOf(path);
+  if (!pages.ok()) return say(pages.fault());
+  if (!writeText(path + ".dump", dump.value()) || !writeText(path + ".pages", pages.value())) return false;
   if (payload != hypermesh::kPayload) return true;
   std::string slices;
   for (const float t : kTimes) {

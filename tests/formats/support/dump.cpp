@@ -183,6 +183,12 @@ Result<std::string> dumpAs(const std::string& path) {
   return dump(file.value());
 }
 
+std::string hex(std::uint64_t value) {
+  char buffer[20];
+  std::snprintf(buffer, sizeof buffer, "%016llx", static_cast<unsigned long long>(value));
+  return buffer;
+}
+
 }  // namespace
 
 Result<std::string> dumpOf(const std::string& path, std::uint32_t payload) {
@@ -194,10 +200,17 @@ Result<std::string> dumpOf(const std::string& path, std::uint32_t payload) {
 Result<std::string> digestOf(const std::string& path, std::uint32_t payload) {
   auto all = dumpOf(path, payload);
   if (!all.ok()) return all.fault();
-  char buffer[20];
-  std::snprintf(buffer, sizeof buffer, "%016llx",
-                static_cast<unsigned long long>(container::xxh3(std::as_bytes(std::span(all.value())))));
-  return std::string(buffer);
+  return hex(container::xxh3(std::as_bytes(std::span(all.value()))));
+}
+
+Result<std::string> pageDigestOf(const std::string& path) {
+  auto reader = container::Reader::open(path, 0, 0, {});
+  if (!reader.ok()) return reader.fault();
+  auto pages = paged::Pages::open(reader.value());
+  if (!pages.ok()) return pages.fault();
+  auto digest = pages.value().contentDigest();
+  if (!digest.ok()) return digest.fault();
+  return hex(digest.value());
 }
 
 Result<std::string> dumpSlice(const std::string& path, float t) {

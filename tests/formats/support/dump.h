@@ -13,6 +13,8 @@ namespace tet4d::test {
 Result<std::string> dumpOf(const std::string& path, std::uint32_t payload);
 // XXH3-64 of the dump, 16 hex digits.
 Result<std::string> digestOf(const std::string& path, std::uint32_t payload);
+// paged::Pages::contentDigest(), 16 hex digits.
+Result<std::string> pageDigestOf(const std::string& path);
 // A hypermesh's slice at t (frames), as `read_hypermesh.py --slice` prints it.
 Result<std::string> dumpSlice(const std::string& path, float t);
 
