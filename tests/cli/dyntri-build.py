@@ -1,0 +1,99 @@
+"""Cases of dyntri-build, and of the way from frames to what is played."""
+
+import pathlib
+
+DAM = "frames=\"$(ls {data}/dambreak/alpha_00{08,09,10,11}.nrrd)\"; tet4d-mc $frames --iso 0.5 -q -o dam.t4h; "
+
+
+def pages(path):
+    """The bytes of a container before its section table: pages and sections, without what provenance says."""
+    content = pathlib.Path(path).read_bytes()
+    return content[64 : content.index(b'{"program"')]
+
+
+def check_same_pages(result):
+    names = ["one.t4d", "three.t4d", "packed.t4d"]
+    contents = [pages(result.directory / name) for name in names]
+    assert contents[0] == contents[1] == contents[2], "the pages depend on threads or on the input's codec"
+
+
+CASES = [
+    {
+        "name": "a dam break, validated",
+        "shell": DAM + "dyntri-build dam.t4h -q -o dam.t4d --stats s.json && tet4d-info --validate --json dam.t4d",
+        "json": {
+            "valid": True,
+            "payload": "dynamic_triangles",
+            "counts.triangles": {"at_least": 100000},
+            "counts.empty": {"at_least": 100000},
+            "provenance.program": "dyntri-build",
+        },
+        "json_file": {"s.json": {"program": "dyntri-build", "counts.pages": 3, "counts.frames": 4, "phases.0.name": "build"}},
+        "needs": ["tet4d-mc", "tet4d-info"],
+    },
+    {
+        "name": "the same bytes for any thread count and memory budget, the same pages for any codec of the input",
+        "shell": DAM + "tet4d-mc $frames --iso 0.5 -q --page-codec zstd -o packed.t4h 2> refused || "
+        # A build without zstd says so; there the input's codec cannot differ.
+        "{ grep -q 'rebuild with TET4D_WITH_ZSTD' refused; cp dam.t4h packed.t4h; }; "
+        "dyntri-build dam.t4h -j 1 -q -o one.t4d; dyntri-build dam.t4h -j 3 -q -o three.t4d; cmp one.t4d three.t4d; "
+        "dyntri-build dam.t4h -j 3 --memory 64M -q -o small.t4d; cmp one.t4d small.t4d; "
+        "dyntri-build packed.t4h -q -o packed.t4d",
+        "check": check_same_pages,
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "too little memory says how much is needed",
+        "shell": DAM + "dyntri-build dam.t4h -j 1 --memory 1M -o x.t4d",
+        "exit": 4,
+        "stderr": ["largest pages", "--memory"],
+        "absent": ["x.t4d"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "a dry run plans and writes nothing",
+        "shell": DAM + "dyntri-build dam.t4h -n -o x.t4d",
+        "stdout": ["passes 1\n", "peak_memory_bytes ", "temporary_bytes 0\n", "output_bytes_at_most "],
+        "absent": ["x.t4d"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "dynamic triangles are no hypermesh",
+        "shell": DAM + "dyntri-build dam.t4h -q -o dam.t4d; dyntri-build dam.t4d -o x.t4d",
+        "exit": 3,
+        "stderr": ["dam.t4d", "DYNT", "HYPM"],
+        "absent": ["x.t4d"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "a hypermesh cut short",
+        "shell": DAM + "head -c 100000 dam.t4h > cut.t4h; dyntri-build cut.t4h -o x.t4d",
+        "exit": 3,
+        "stderr": ["cut.t4h", "header"],
+        "absent": ["x.t4d"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "a damaged page is named",
+        "shell": DAM + "printf '\\377' | dd of=dam.t4h bs=1 seek=5000 conv=notrunc status=none; dyntri-build dam.t4h -o x.t4d",
+        "exit": 3,
+        "stderr": ["dam.t4h", "page 0", "checksum"],
+        "absent": ["x.t4d"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "a full disk leaves nothing behind",
+        "shell": DAM + "ulimit -f 256; dyntri-build dam.t4h -o x.t4d",
+        "exit": 4,
+        "stderr": ["x.t4d"],
+        "absent": ["x.t4d"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "no surface, no triangles, a valid file",
+        "shell": "tet4d-mc {data}/dambreak --iso 7 -q -o e.t4h 2> /dev/null; dyntri-build e.t4h -q -o e.t4d; "
+        "tet4d-info --validate --json e.t4d",
+        "json": {"valid": True, "counts.triangles": 0, "counts.frames": 33},
+        "needs": ["tet4d-mc", "tet4d-info"],
+    },
+]
