@@ -36,6 +36,7 @@ struct KuhnTable {
     std::vector<std::array<std::vector<CellTet>, 32>> split(pentatopes.size());
     for (std::size_t p = 0; p < pentatopes.size(); ++p)
       for (unsigned signs = 0; signs < 32; ++signs) split[p][signs] = splitPentatope(pentatopes[p], signs);
+    tets.reserve(3'440'640);  // all of them: growing would hold the table twice
     for (unsigned configuration = 0; configuration < kConfigurations; ++configuration) {
       for (std::size_t p = 0; p < pentatopes.size(); ++p) {
         unsigned signs = 0;

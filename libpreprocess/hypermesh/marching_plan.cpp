@@ -67,14 +67,17 @@ Plan plan(const exchange::FrameSource& source, const Options& options) {
   plan.fixed_bytes = 2 * grid.voxels() * (as_float ? sizeof(float) : sizeof(double)) +
                      (as_float ? FrameReader<float>::bytes(grid) : FrameReader<double>::bytes(grid)) +
                      sign_planes * shape.words() * sizeof(std::uint64_t) + edgeSetBytes(shape, 2 * within + through);
+  // The hull table is read-only data of the program; the Kuhn table is made at run time.
+  if (options.split == Split::kKuhn) plan.fixed_bytes += table.tets.size_bytes() + table.offsets.size_bytes();
   const std::uint64_t slabs = source.times().size() - 1;
   const std::uint64_t most_tets = shape.cells() * table.max_tets;
   const std::uint64_t frame_vertices = grid.voxels() * within, slab_vertices = grid.voxels() * through;
   const std::uint64_t page = (2 * frame_vertices + slab_vertices) * sizeof(Vec4f) + most_tets * sizeof(Tet);
   plan.most_page_bytes = page * (options.page_codec == paged::Codec::kRaw ? 2 : 3);
-  const std::uint64_t overhead =
-      4096 + slabs * (container::kPageAlignment + sizeof(paged::PageEntry)) + source.times().size() * sizeof(double);
-  plan.least_output_bytes = overhead;
+  // Every slab has an aligned page, if only to say that it is empty; then come page table, times and header.
+  plan.least_output_bytes = slabs * (container::kPageAlignment + sizeof(paged::PageEntry)) +
+                            source.times().size() * sizeof(double) + sizeof(MeshHeader);
+  const std::uint64_t overhead = plan.least_output_bytes + 4096;
   plan.most_output_bytes = overhead + slabs * most_tets * sizeof(Tet) +
                            (slabs * (frame_vertices + slab_vertices) + frame_vertices) * sizeof(Vec4f) +
                            slabs * container::kPageAlignment;

@@ -320,7 +320,11 @@ TEST(Marching, PlanBoundsTheRun) {
     const Plan bound = plan(source, options);
     const ExtractedMesh mesh = extract(source, options);
     EXPECT_LE(mesh.bytes.size(), bound.most_output_bytes);
-    EXPECT_GE(mesh.bytes.size(), bound.least_output_bytes / 2);
+    EXPECT_GE(mesh.bytes.size(), bound.least_output_bytes);
+    const ExtractedMesh empty = extract(source, {.iso = 7, .nan = nan});
+    ASSERT_TRUE(empty.tets.empty());
+    EXPECT_GE(empty.bytes.size(), bound.least_output_bytes);
+    EXPECT_LT(empty.bytes.size(), bound.least_output_bytes + 4096);
     outofcore::MemoryBudget tight(bound.fixed_bytes - 1), roomy(bound.fixed_bytes + bound.most_page_bytes);
     outofcore::ThreadExecutor executor(1);
     outofcore::Progress progress;
