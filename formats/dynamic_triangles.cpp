@@ -183,7 +183,10 @@ Status Writer::addPage(const PageView& page, std::uint64_t tets, std::uint64_t e
                  "there must be one lifespan a triangle", ""};
   }
   const PageHeader head{page.vertices.size(), page.edges.size(), page.triangles.size(), {}};
-  page_layout::Builder builder;
+  using page_layout::padded;
+  page_layout::Builder builder(padded(sizeof head) + padded(page.vertices.size_bytes()) +
+                               padded(page.edges.size_bytes()) + padded(page.lifespans.size_bytes()) +
+                               padded(page.triangles.size_bytes()));
   builder.add<PageHeader>({&head, 1});
   builder.add(page.vertices);
   builder.add(page.edges);

@@ -318,7 +318,9 @@ Status Writer::addPage(std::span<const Vec4f> vertices, std::span<const Run> run
   head.tets = tets.size();
   head.runs = runs.size();
   for (const Run& run : runs) head.foreign += run.count;
-  page_layout::Builder builder;
+  using page_layout::padded;
+  page_layout::Builder builder(padded(sizeof head) + padded(vertices.size_bytes()) + padded(runs.size_bytes()) +
+                               padded(tets.size_bytes()));
   builder.add<PageHeader>({&head, 1});
   builder.add(vertices);
   builder.add(runs);

@@ -28,6 +28,8 @@ inline bool allZero(std::span<const std::byte> bytes) {
 // Appends the parts of a page to one buffer.
 class Builder {
  public:
+  // `bytes`: what the parts will need with their padding, so that the buffer is allocated once.
+  explicit Builder(std::uint64_t bytes = 0) { bytes_.reserve(bytes); }
   template <class T>
   void add(std::span<const T> items) {
     const auto bytes = std::as_bytes(items);

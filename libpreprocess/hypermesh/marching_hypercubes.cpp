@@ -43,7 +43,7 @@ class Extraction {
 
  private:
   void read(std::size_t frame);
-  void placeVertices(const EdgeSet& set, const EdgeSamples<T>& samples, std::vector<Vec4f>& out) const;
+  void placeVertices(const EdgeSet& set, const EdgeSamples<T>& samples, std::vector<Vec4f>& out);
   void extractSlab(std::size_t slab, std::unique_ptr<Tet[]>& tets, std::uint64_t& count);
   void writeSlab(std::size_t slab, std::span<const Tet> tets);
   std::vector<std::uint64_t> countTets(const SlabTets& slab_tets);
@@ -68,7 +68,7 @@ class Extraction {
   FrameReader<T> reader_;
   SampleRange range_;
   Stats stats_;
-  outofcore::MemoryBudget::Reservation page_memory_;
+  outofcore::MemoryBudget::Reservation position_memory_, page_memory_;
 
   std::array<std::vector<T>, 2> samples_;
   std::array<FrameBits, 3> bits_;
@@ -95,8 +95,13 @@ void Extraction<T>::read(std::size_t frame) {
 }
 
 template <class T>
-void Extraction<T>::placeVertices(const EdgeSet& set, const EdgeSamples<T>& samples, std::vector<Vec4f>& out) const {
+void Extraction<T>::placeVertices(const EdgeSet& set, const EdgeSamples<T>& samples, std::vector<Vec4f>& out) {
   const std::size_t first = out.size();
+  // While `out` grows, its old and its new place are held, beside the other set.
+  position_memory_ = {};
+  position_memory_ = memory_.reserve((own_.capacity() + next_.capacity() + first + set.count) * sizeof(Vec4f),
+                                     "vertices of frame " + std::to_string(samples.frame));
+  out.reserve(first + set.count);
   out.resize(first + set.count);
   const std::uint64_t row = shape_.dims[0], layer = row * shape_.dims[1];
   const double iso = options_.iso;
@@ -173,10 +178,13 @@ void Extraction<T>::extractSlab(std::size_t slab, std::unique_ptr<Tet[]>& tets, 
   const SlabTets slab_tets(table_, planes);
   const std::vector<std::uint64_t> first = countTets(slab_tets);
   count = first.back();
-  const std::uint64_t page = (own_.size() + next_.size()) * sizeof(Vec4f) + count * sizeof(Tet);
+  // The tetrahedra, the page's bytes and, if it is compressed, those once more; the last page also takes in `next_`.
+  const std::uint64_t joined = isLast(slab) ? (own_.size() + next_.size()) * sizeof(Vec4f) : 0;
+  const std::uint64_t page = std::max<std::uint64_t>(joined, own_.size() * sizeof(Vec4f)) + count * sizeof(Tet);
   page_memory_ = {};
-  page_memory_ = memory_.reserve(page * (options_.page_codec == paged::Codec::kRaw ? 2 : 3),
-                                 "slab " + std::to_string(slab) + " of the hypermesh");
+  page_memory_ =
+      memory_.reserve(count * sizeof(Tet) + joined + page * (options_.page_codec == paged::Codec::kRaw ? 1 : 2),
+                      "slab " + std::to_string(slab) + " of the hypermesh");
   tets = std::make_unique_for_overwrite<Tet[]>(count);
   executor_.run(first.size() - 1, [&](std::size_t z) {
     slab_tets.emitLayer(z, std::span(tets.get() + first[z], first[z + 1] - first[z]));
@@ -187,7 +195,11 @@ template <class T>
 void Extraction<T>::writeSlab(std::size_t slab, std::span<const Tet> tets) {
   progress_.phase("write", frames_ - 1);
   const Bounds4f bounds = boundsOf(tets);
-  if (isLast(slab)) own_.insert(own_.end(), next_.begin(), next_.end()), next_.clear();
+  if (isLast(slab)) {
+    own_.reserve(own_.size() + next_.size());
+    own_.insert(own_.end(), next_.begin(), next_.end());
+    next_.clear();
+  }
   std::vector<Run> runs;
   if (!next_.empty()) runs.push_back({writer_.nextVertex() + own_.size(), next_.size()});
   unwrap(writer_.addPage(own_, runs, tets, bounds));

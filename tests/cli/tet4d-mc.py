@@ -148,9 +148,9 @@ CASES = [
     },
     {
         "name": "runs inside the memory it was given",
-        "run": ["tet4d-mc", "{data}/dambreak", "--iso", "0.5", "-o", "x.t4h", "--memory", "16M", "-j", "1", "-q"],
-        # The program's own data and the memory allocator's slack come on top.
-        "limits": {"data": 28 << 20},
+        "run": ["tet4d-mc", "{data}/dambreak", "--iso", "0.5", "-o", "x.t4h", "--memory", "6M", "-j", "1", "-q"],
+        # 2 MiB for the program's own data and the allocator.
+        "limits": {"data": 8 << 20},
     },
     {
         "name": "a full disk leaves nothing behind",

@@ -13,7 +13,7 @@ namespace tet4d::cli {
 namespace {
 
 constexpr int kBarWidth = 32;
-constexpr double kSampleSeconds = 0.1;  // between looks at memory and redraws of the bar
+constexpr double kRedrawSeconds = 0.1;  // between redraws of the bar
 
 double seconds(std::chrono::steady_clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -23,16 +23,6 @@ double processCpuSeconds() {
   timespec now{};
   ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-std::uint64_t processMemory(std::string_view field) {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with(field) && line.size() > field.size() && line[field.size()] == ':') {
-      return std::strtoull(line.c_str() + field.size() + 1, nullptr, 10) * 1024;
-    }
-  }
-  return 0;
 }
 
 ConsoleProgress::ConsoleProgress(std::string program, Look look) : program_(std::move(program)), look_(look) {}
@@ -69,14 +59,6 @@ void ConsoleProgress::endPhase() {
   PhaseTimes& times = phases_[current_];
   times.seconds_wall += secondsInPhase();
   times.seconds_cpu += processCpuSeconds() - phase_cpu_begin_;
-  anonymous_peak_ = std::max(anonymous_peak_, processMemory("RssAnon"));
-}
-
-// While a phase runs too: its temporary memory is gone when it ends. Reading /proc takes longer than many a step.
-void ConsoleProgress::sampleMemory() {
-  if (seconds(Clock::now() - last_sampled_) < kSampleSeconds) return;
-  anonymous_peak_ = std::max(anonymous_peak_, processMemory("RssAnon"));
-  last_sampled_ = Clock::now();
 }
 
 void ConsoleProgress::show(std::uint64_t done) {
@@ -84,11 +66,10 @@ void ConsoleProgress::show(std::uint64_t done) {
   const bool complete = done >= total_;
   const double part = total_ == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total_));
   const auto percent = static_cast<std::uint64_t>(100 * part);
-  sampleMemory();
 
   const auto& name = phases_[current_].name;
   if (look_ == Look::kBar) {
-    if (since_shown < kSampleSeconds && (!complete || !bar_on_screen_)) return;
+    if (since_shown < kRedrawSeconds && (!complete || !bar_on_screen_)) return;
     drawBar(part);
   } else if (look_ == Look::kPlain) {
     // Every 10 %, but steps within the same second share a line; and every 30 s.
@@ -96,7 +77,7 @@ void ConsoleProgress::show(std::uint64_t done) {
     if (!tenth && since_shown < 30) return;
     fmt::print(stderr, "{}: {}: {} % ({} of {}), {:.1f} s\n", program_, name, percent, done, total_, secondsInPhase());
   } else if (look_ == Look::kJson) {
-    if (since_shown < kSampleSeconds && !(complete && shown_percent_ < 100)) return;
+    if (since_shown < kRedrawSeconds && !(complete && shown_percent_ < 100)) return;
     const nlohmann::ordered_json line{
         {"phase", name}, {"done", done}, {"total", total_}, {"seconds", secondsInPhase()}};
     fmt::print(stderr, "{}\n", line.dump());

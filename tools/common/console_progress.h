@@ -18,8 +18,6 @@ struct PhaseTimes {
 };
 
 double processCpuSeconds();
-// A field of /proc/self/status in bytes ("VmHWM", "RssAnon"); 0 where the system has none.
-std::uint64_t processMemory(std::string_view field);
 
 // Thread-safe: tasks may report steps.
 class ConsoleProgress final : public outofcore::Progress {
@@ -38,13 +36,11 @@ class ConsoleProgress final : public outofcore::Progress {
 
   // Phases that have ended, in order of their first beginning; the same name twice adds up.
   const std::vector<PhaseTimes>& phases() const { return phases_; }
-  std::uint64_t anonymousPeakBytes() const { return anonymous_peak_; }
 
  private:
   using Clock = std::chrono::steady_clock;
 
   void endPhase();
-  void sampleMemory();
   void show(std::uint64_t done);
   void drawBar(double part);
   double secondsInPhase() const;
@@ -56,11 +52,10 @@ class ConsoleProgress final : public outofcore::Progress {
   std::size_t current_ = 0;  // in phases_, while in_phase_
   bool in_phase_ = false, finished_ = false;
   std::uint64_t total_ = 0, done_ = 0;
-  Clock::time_point phase_begin_, last_shown_, last_sampled_{};
+  Clock::time_point phase_begin_, last_shown_;
   double phase_cpu_begin_ = 0;
   std::uint64_t shown_percent_ = 0;
   bool bar_on_screen_ = false;
-  std::uint64_t anonymous_peak_ = 0;
 };
 
 }  // namespace tet4d::cli

@@ -16,6 +16,7 @@
 #include "tools/common/bindings.h"
 #include "tools/common/cli.h"
 #include "tools/common/console_progress.h"
+#include "tools/common/memory_sampler.h"
 
 namespace tet4d::cli {
 
@@ -77,12 +78,15 @@ struct Session::State {
   State(const Command& a_command)
       : command(a_command),
         progress(a_command.program(), lookOf(a_command.commonOptions())),
-        memory(a_command.commonOptions().memory_bytes) {}
+        memory(a_command.commonOptions().memory_bytes) {
+    if (!a_command.commonOptions().stats.empty()) sampler.emplace();  // only --stats tells
+  }
 
   const Command& command;
   std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
   ConsoleProgress progress;
   outofcore::MemoryBudget memory;
+  std::optional<MemorySampler> sampler;
   std::unique_ptr<outofcore::ThreadExecutor> executor;
   Stats stats;
   std::vector<std::string> dependencies;
@@ -192,7 +196,7 @@ void Session::finish() {
   all["seconds_wall"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - state.begin).count();
   all["seconds_cpu"] = processCpuSeconds();
   all["peak_bytes"] = processMemory("VmHWM");
-  all["anonymous_bytes"] = std::max(state.progress.anonymousPeakBytes(), processMemory("RssAnon"));
+  all["anonymous_bytes"] = state.sampler->peakBytes();
   all["threads"] = state.executor ? state.executor->threads() : std::size_t{1};
   all["phases"] = phasesJson(state.progress);
   all["error"] = objectOf(state.stats.errors());
