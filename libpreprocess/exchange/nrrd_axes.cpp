@@ -164,7 +164,7 @@ std::vector<double> spaceOrigin(const NrrdFields& fields, std::size_t components
   const NrrdField* field = fields.find("space origin");
   if (field == nullptr) return std::vector<double>(components, 0.0);
   const auto words = nrrdWords(field->text);
-  const auto origin = words.size() == 1 ? nrrdVector(words[0]) : std::vector<double>{};
+  auto origin = words.size() == 1 ? nrrdVector(words[0]) : std::vector<double>{};
   if (origin.size() != components) {
     fields.fail(*field,
                 "expected a vector of " + std::to_string(components) + " numbers, found " + inQuotes(field->text),

@@ -3,7 +3,7 @@
 namespace tet4d::hypermesh {
 
 int determinant4(const std::array<std::array<int, 4>, 4>& rows) {
-  const auto& [a, b, c, d] = rows;
+  const auto &a = rows[0], &b = rows[1], &c = rows[2], &d = rows[3];
   // Laplace expansion by the 2x2 minors of the upper and the lower pair of rows.
   const auto upper = [&](std::size_t i, std::size_t j) { return a[i] * b[j] - a[j] * b[i]; };
   const auto lower = [&](std::size_t i, std::size_t j) { return c[i] * d[j] - c[j] * d[i]; };

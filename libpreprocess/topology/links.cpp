@@ -74,7 +74,7 @@ class VertexLink {
       for (std::size_t c = 0; c < 3; ++c) {
         const std::uint32_t a = local[(c + 1) % 3], b = local[(c + 2) % 3];
         corners_[local[c]].push_back({a, b});
-        sides_.push_back({std::min(a, b), std::max(a, b)});
+        sides_.emplace_back(std::min(a, b), std::max(a, b));
       }
     }
     std::sort(sides_.begin(), sides_.end());
@@ -173,9 +173,9 @@ Stars starsOf(std::span<const Tet> tets, std::size_t vertices, LinkCheck& check)
   return stars;
 }
 
-// mayBound(v): whether vertex v may lie on the boundary.
+// may_bound(v): whether vertex v may lie on the boundary.
 template <class MayBound>
-LinkCheck check(std::span<const Tet> tets, std::size_t vertices, MayBound mayBound) {
+LinkCheck check(std::span<const Tet> tets, std::size_t vertices, MayBound may_bound) {
   LinkCheck result;
   const Stars stars = starsOf(tets, vertices, result);
   VertexLink link;
@@ -225,7 +225,7 @@ LinkCheck check(std::span<const Tet> tets, std::size_t vertices, MayBound mayBou
         ++result.sphere_links;
         break;
       case VertexLink::Shape::kDisc:
-        if (mayBound(v)) {
+        if (may_bound(v)) {
           ++result.disc_links;
         } else {
           bad("a disc, but no boundary may be there");

@@ -34,6 +34,7 @@ std::vector<std::uint8_t> makeEncoder() {
 
 std::uint8_t encodeStep(float linear_steps) {
   static const std::vector<std::uint8_t> kTable = makeEncoder();
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): never negative, and a call for every channel of every sample
   return kTable[std::min(static_cast<std::size_t>(linear_steps + 0.5f), kTable.size() - 1)];
 }
 

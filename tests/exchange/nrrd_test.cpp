@@ -172,7 +172,7 @@ TEST(Nrrd, GzipOfSeveralMembersAndBackwardReads) {
     data += gzipped(sampleText(SampleType::kI16, 12, true, static_cast<std::uint64_t>(12 * k)));
   NrrdFile file(scratch.write(
       "a.nrrd", "NRRD0004\ntype: short\ndimension: 4\nsizes: 3 2 2 5\nencoding: gzip\nendian: big\n\n" + data));
-  for (const std::uint64_t k : {0, 1, 4, 4, 2, 3, 0}) {
+  for (const std::uint64_t k : {0u, 1u, 4u, 4u, 2u, 3u, 0u}) {
     EXPECT_EQ(readFrame(file, k), nativeSamples(SampleType::kI16, 12, 12 * k)) << k;
   }
 }
