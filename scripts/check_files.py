@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Checks what holds for every text file: its length, the READMEs of rooms, words that mark unfinished work, paths of one machine.
+"""Checks what holds for every text file: its length, the READMEs of rooms, words that mark unfinished work, paths of one
+machine, links that lead nowhere.
 
 usage: scripts/check_files.py [--root DIR]
 """
@@ -18,6 +19,7 @@ CODE = {".h", ".cpp", ".cc", ".inc", ".glsl", ".vert", ".frag", ".py", ".sh", ".
 TEXT = CODE | {".md", ".json", ".in", ".yml"}
 # Spelled in pieces, so that this file does not find itself.
 UNFINISHED = re.compile(r"\b(TO" + r"DO|FIX" + r"ME|X" + r"XX|HA" + r"CK|st" + r"ub|not\s+yet\s+imple" + r"mented)\b")
+LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
 MACHINE_PATH = re.compile(r"(?<![\w.}$])/(home|root|work|Users|mnt)/")
 
 
@@ -40,6 +42,10 @@ def checkText(name, path):
     for number, line in enumerate(lines, 1):
         if path.suffix in CODE and (found := UNFINISHED.search(line)):
             yield f"{name}:{number}: '{found.group()}' marks unfinished work"
+        if path.suffix == ".md":
+            for link in LINK.findall(line):
+                if not (path.parent / link).exists():
+                    yield f"{name}:{number}: the link to {link} leads nowhere"
         if found := MACHINE_PATH.search(line):
             yield f"{name}:{number}: '{found.group()}...' is a path of one machine"
 
