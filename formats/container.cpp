@@ -82,6 +82,12 @@ Result<Writer> Writer::create(const std::string& path, std::uint32_t payload, st
     return Fault{FaultCode::kUsage, path, "", "a container cannot be written to standard output",
                  "name a file with -o"};
   }
+  // A container is made beside its name and renamed to it: what is no file would be replaced by one.
+  struct stat info {};
+  if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) {
+    return Fault{FaultCode::kUsage, path, "",
+                 "is a directory, device or pipe, and a container can only be a regular file", "name a regular file"};
+  }
   if (!force && ::access(path.c_str(), F_OK) == 0) {
     return Fault{FaultCode::kIo, path, "", "exists and is kept", "remove it, choose another name, or pass --force"};
   }
