@@ -19,8 +19,9 @@ thread_local bool inside_task = false;
 }  // namespace
 
 struct ThreadExecutor::State {
-  std::vector<std::thread> workers;
-  std::mutex run_mutex;  // one run() at a time
+  std::atomic<std::size_t> limit{1};  // threads, the caller's included
+  std::vector<std::thread> workers;   // grows under run_mutex
+  std::mutex run_mutex;               // one run() at a time
 
   std::mutex mutex;
   std::condition_variable begin, end;
@@ -33,6 +34,15 @@ struct ThreadExecutor::State {
   std::atomic<std::size_t> next{0};
   std::atomic<bool> failed{false};
   std::exception_ptr failure;
+
+  // Until there are `wanted`, or as many as the system grants: those do the work, with the same result.
+  void startWorkers(std::size_t wanted) {
+    try {
+      while (workers.size() < wanted) workers.emplace_back([this, before = round] { work(before); });
+    } catch (const std::system_error&) {
+      limit = workers.size() + 1;
+    }
+  }
 
   // Takes tasks until none is left or one has failed.
   void drain() {
@@ -48,8 +58,8 @@ struct ThreadExecutor::State {
     inside_task = false;
   }
 
-  void work() {
-    std::uint64_t seen = 0;
+  // `seen` is the round before the worker's first one.
+  void work(std::uint64_t seen) {
     std::unique_lock lock(mutex);
     while (true) {
       begin.wait(lock, [&] { return stopping || round != seen; });
@@ -65,11 +75,7 @@ struct ThreadExecutor::State {
 
 ThreadExecutor::ThreadExecutor(std::size_t threads) : state_(new State) {
   if (threads == 0) threads = std::max<std::size_t>(1, std::thread::hardware_concurrency());
-  try {
-    for (std::size_t i = 1; i < threads; ++i) state_->workers.emplace_back([this] { state_->work(); });
-  } catch (const std::system_error&) {
-    // The system grants no more threads: those that started do the work, with the same result.
-  }
+  state_->limit = std::min(threads, kMaxThreads);
 }
 
 ThreadExecutor::~ThreadExecutor() {
@@ -82,14 +88,15 @@ ThreadExecutor::~ThreadExecutor() {
   delete state_;
 }
 
-std::size_t ThreadExecutor::threads() const { return state_->workers.size() + 1; }
+std::size_t ThreadExecutor::threads() const { return state_->limit; }
 
 void ThreadExecutor::run(std::size_t count, const std::function<void(std::size_t)>& task) {
-  if (inside_task || count <= 1 || state_->workers.empty()) {
+  if (inside_task || count <= 1 || state_->limit == 1) {
     for (std::size_t i = 0; i < count; ++i) task(i);
     return;
   }
   const std::lock_guard one_run(state_->run_mutex);
+  state_->startWorkers(std::min<std::size_t>(state_->limit, count) - 1);
   {
     const std::lock_guard lock(state_->mutex);
     state_->task = &task;

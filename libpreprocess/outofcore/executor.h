@@ -16,7 +16,11 @@ class Executor {
   virtual void run(std::size_t count, const std::function<void(std::size_t)>& task) = 0;
 };
 
-// Runs tasks on `threads` threads (0 = one per core), the caller's among them. Threads live as long as the executor.
+// Most threads an executor runs; more are of no use to any builder.
+inline constexpr std::size_t kMaxThreads = 256;
+
+// Runs tasks on `threads` threads (0 = one per core, at most kMaxThreads), the caller's among them. A thread is started
+// when there is a task for it and lives as long as the executor.
 class ThreadExecutor final : public Executor {
  public:
   explicit ThreadExecutor(std::size_t threads);

@@ -13,7 +13,7 @@ class Progress {
   virtual ~Progress() = default;
   // A new phase of `total` steps begins ("read", "extract", "write", "measure", …). Times are kept per phase name.
   virtual void phase(std::string_view name, std::uint64_t total) { (void)name, (void)total; }
-  // `done` steps of the phase are finished. Throws Error{kInterrupted} after SIGINT or SIGTERM.
+  // `done` steps of the phase are finished. Throws Error{kInterrupted} after SIGINT, SIGTERM or SIGHUP.
   virtual void step(std::uint64_t done);
 };
 

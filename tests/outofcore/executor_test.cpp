@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <filesystem>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -78,6 +80,22 @@ TEST(ThreadExecutorTest, WorkIsShared) {
 }
 
 TEST(ThreadExecutorTest, ZeroMeansOneThreadPerCore) { EXPECT_GE(ThreadExecutor(0).threads(), 1u); }
+
+// No more threads than kMaxThreads, and none without a task for it.
+TEST(ExecutorLimitTest, ThreadsAreStartedForTasks) {
+  const auto threadsOfProcess = [] {
+    const std::filesystem::directory_iterator tasks("/proc/self/task");
+    return std::distance(begin(tasks), end(tasks));
+  };
+  const auto before = threadsOfProcess();
+  ThreadExecutor executor(100'000);
+  EXPECT_EQ(executor.threads(), kMaxThreads);
+  EXPECT_EQ(threadsOfProcess(), before);
+  std::atomic<int> runs{0};
+  for (const std::size_t count : {3, 2, 5, 4}) executor.run(count, [&](std::size_t) { ++runs; });
+  EXPECT_EQ(runs, 14);
+  EXPECT_EQ(threadsOfProcess(), before + 4);
+}
 
 }  // namespace
 }  // namespace tet4d::outofcore
