@@ -4,7 +4,7 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 
 add_library(tet4d_cli STATIC
-  common/bindings.cpp common/command.cpp common/console_progress.cpp common/memory_sampler.cpp common/nearest.cpp
+  common/bindings.cpp common/command.cpp common/console_progress.cpp common/files.cpp common/memory_sampler.cpp common/nearest.cpp
   common/parse.cpp common/run.cpp common/session.cpp)
 add_library(tet4d::cli ALIAS tet4d_cli)
 target_include_directories(tet4d_cli PUBLIC ${PROJECT_SOURCE_DIR})

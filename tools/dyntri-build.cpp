@@ -28,6 +28,7 @@ void printPlan(const hypermesh::File& mesh, std::size_t threads) {
 }
 
 int build(cli::Session& session, const std::string& input, const std::string& codec) {
+  cli::expectSuffix(session, ".t4d", "name it X.t4d");
   const hypermesh::File mesh = unwrap(hypermesh::File::open(input));
   session.dependsOn(input);
   session.stats().count("tets", mesh.header().tets);
@@ -44,7 +45,8 @@ int build(cli::Session& session, const std::string& input, const std::string& co
       dyntri::Writer::create(session.options().output, header, mesh.times(), page_codec, session.options().force));
   const dyntri::BuildStats stats =
       dyntri::buildDynamicTriangles(mesh, writer, session.executor(), session.memory(), session.progress());
-  const cli::Input provenance{input, hex(unwrap(mesh.contentDigest()))};
+  // Neither the file's name nor its codec changes what comes out.
+  const cli::Input provenance{"hypermesh", hex(unwrap(mesh.contentDigest()))};
   unwrap(writer.close(session.provenance({&provenance, 1})));
   session.stats().count("vertices", stats.vertices);
   session.stats().count("edges", stats.edges);

@@ -169,7 +169,7 @@ void convertFrames(cli::Session& session, const Options& options) {
   if (suffix == ".t4g") {
     const paged::Codec codec = options.codec == "zstd" ? paged::Codec::kZstd : paged::Codec::kRaw;
     const auto provenance = [&](std::uint64_t digest) {
-      const cli::Input input{options.inputs.front(), hex(digest)};
+      const cli::Input input{"frames", hex(digest)};  // whatever the files are called
       return session.provenance({&input, 1});
     };
     exchange::writeGrid4(output, *frames, codec, session.options().force, provenance, session.progress());

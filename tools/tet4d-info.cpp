@@ -1,5 +1,8 @@
 // tet4d-info: what a file holds, and whether it holds what it promises.
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <type_traits>
 
 #include "libpreprocess/error.h"
 #include "libpreprocess/topology/check_hypermesh.h"
@@ -47,9 +50,24 @@ void checkLinks(const hypermesh::File& file, ordered_json& out, cli::Session& se
   addFaults(out, check.faults);
 }
 
+// What proving one page after the other may hold at once: a page decoded, and of a hypermesh the positions gathered for
+// it, its own vertices and those of earlier pages.
+template <class File>
+std::uint64_t largestPage(const File& file) {
+  std::uint64_t most = 0;
+  for (const paged::PageEntry& entry : file.pages().entries()) {
+    const std::uint64_t vertices =
+        std::is_same_v<File, hypermesh::File> && entry.kind == 0 ? entry.counts[1] + entry.counts[3] : 0;
+    most = std::max(most, entry.raw_bytes + vertices * sizeof(Vec4f));
+  }
+  return most;
+}
+
 // Structure first; what stands on a damaged file is not worth checking.
 void validate(const info::AnyFile& any, const Options& options, ordered_json& out, cli::Session& session) {
   session.progress().phase("verify", 1);
+  const auto held = session.memory().reserve(std::visit([](const auto& file) { return largestPage(file); }, any),
+                                             "the largest page, decoded and with its neighbours' vertices,");
   const Status status = std::visit([](const auto& file) { return file.verify(); }, any);
   session.progress().step(1);
   if (!status.ok()) {

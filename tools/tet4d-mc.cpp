@@ -138,6 +138,10 @@ int extract(cli::Session& session, const Arguments& arguments) {
     throw Error(FaultCode::kUsage, "", "option --output", "a hypermesh cannot be written to a pipe",
                 "name a file: -o X.t4h");
   }
+  cli::expectSuffix(session, ".t4h", "name it X.t4h; tet4d-convert makes .vtu, .ply and others of a .t4h");
+  if (std::find(arguments.frames.begin(), arguments.frames.end(), "-") != arguments.frames.end()) {
+    throw Error(FaultCode::kUsage, "", "FRAMES", "frames cannot be read from standard input yet", "give files");
+  }
   exchange::FrameSourceOptions source_options;
   source_options.allow_gaps = arguments.allow_gaps;
   source_options.times = timesOf(arguments.times, session);
@@ -181,7 +185,7 @@ int main(int argc, char** argv) {
       // The file's own table holds the times, so provenance need not.
       .option("--times", "TIMES",
               "world times of the frames instead of the files' own: T,T,... or a file that holds them",
-              &arguments.times, cli::kKeepsResult)
+              &arguments.times, cli::kKeepsResult | cli::kIsInput)
       .flag("--allow-gaps", "accept a hole in the numbering of the files", &arguments.allow_gaps, cli::kKeepsResult)
       .option("--page-codec", "CODEC", "how pages are stored", cli::Choice{&arguments.codec, {"raw", "zstd"}})
       .common(

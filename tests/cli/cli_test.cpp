@@ -170,6 +170,9 @@ TEST_F(CliTest, ValuesThatAreNone) {
                                                         {"--size", "640"},
                                                         {"--size", "0x480"},
                                                         {"--size", "640x480x3"},
+                                                        {"--iso", "nan"},
+                                                        {"--error", "inf"},
+                                                        {"--weights", "1,-inf"},
                                                         {"--weights", "1,b"}}) {
     const Fault fault = faultOf({"a", option, text});
     EXPECT_EQ(fault.code, FaultCode::kUsage);

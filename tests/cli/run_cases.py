@@ -98,7 +98,7 @@ def check_manners(program, result):
     for trace in ("terminate called", "Sanitizer", "runtime error:", "core dumped", "Traceback"):
         assert trace not in result.stderr, f"stderr has {trace!r}"
     left = [str(p.relative_to(result.directory)) for p in result.directory.rglob("*")
-            if p.name.endswith(".part") or ".tmp" in p.name]
+            if p.name.endswith(".part") or ".partial-" in p.name or ".tmp" in p.name]
     assert not left, f"temporary files were left: {left}"
 
 

@@ -78,7 +78,8 @@ class RunnerTest(unittest.TestCase):
         self.assertTrue(self.holds(run=["tool", "leave", "f"], file={"f": ["con", "tent"]}, absent=["g"]))
         self.assertFalse(self.holds(run=["tool", "leave", "f"], file={"f": "conten"}))
         self.assertFalse(self.holds(run=["tool", "leave", "f"], absent=["f"]))
-        self.assertFalse(self.holds(run=["tool", "leave", "f.part"]), "temporary files are noticed")
+        for temporary in ("f.part", "f.partial-123-0", "f.tmp1"):
+            self.assertFalse(self.holds(run=["tool", "leave", temporary]), "temporary files are noticed")
 
     def test_interrupt(self):
         self.assertTrue(self.holds(run=["tool", "loop"], exit=1, interrupt={"when": "running"}))

@@ -90,4 +90,18 @@ CASES = [
         "absent": ["x.vtu"],
         "needs": ["tet4d-mc"],
     },
+    {
+        "name": "an output that is an input is refused and the input kept",
+        "shell": "cp {data}/dambreak/alpha_00{08,09}.nrrd .; code=0; "
+        "tet4d-convert alpha_0008.nrrd alpha_0009.nrrd -o alpha_0008.nrrd -f || code=$?; "
+        "cmp alpha_0008.nrrd {data}/dambreak/alpha_0008.nrrd; exit $code",
+        "exit": 2,
+        "stderr": ["--output: 'alpha_0008.nrrd' is the same file as the input FILE 'alpha_0008.nrrd'"],
+    },
+    {
+        "name": "frames called otherwise make the same file",
+        "shell": "cp {data}/dambreak/alpha_00{08,09}.nrrd .; tet4d-convert alpha_%04d.nrrd -q -o one.t4g; "
+        "mv alpha_0008.nrrd b_1.nrrd; mv alpha_0009.nrrd b_2.nrrd; tet4d-convert b_1.nrrd b_2.nrrd -q -o two.t4g; "
+        "cmp one.t4g two.t4g",
+    },
 ]

@@ -21,6 +21,7 @@ using nlohmann::ordered_json;
 struct Source {
   const std::string& shown;
   const std::string& text;
+  bool may_be_infinite = false;
 
   [[noreturn]] void fail(const std::string& expected) const {
     throw Error(FaultCode::kUsage, {}, shown, fmt::format("'{}' is not {}", text, expected), "see --help");
@@ -37,7 +38,18 @@ bool parseNumber(std::string_view text, T& value) {
 double toDouble(const Source& source, std::string_view text) {
   double value = 0;
   if (!parseNumber(text, value)) source.fail("a number");
+  if (!std::isfinite(value) && !source.may_be_infinite) source.fail("a finite number");
   return value;
+}
+
+bool toFlag(const Source& source) {
+  for (const char* yes : {"true", "1", "on", "yes"}) {
+    if (source.text == yes) return true;
+  }
+  for (const char* no : {"false", "0", "off", "no"}) {
+    if (source.text == no) return false;
+  }
+  source.fail("true or false");
 }
 
 std::uint64_t toCount(const Source& source) {
@@ -135,9 +147,9 @@ Overloaded(Branches...) -> Overloaded<Branches...>;
 }  // namespace
 
 void assign(const Option& option, const std::string& shown, const std::vector<std::string>& texts) {
-  const Source source{shown, texts.back()};
+  const Source source{shown, texts.back(), (option.traits & kMayBeInfinite) != 0};
   std::visit(Overloaded{
-                 [&](bool* value) { *value = source.text != "false" && source.text != "0"; },
+                 [&](bool* value) { *value = toFlag(source); },
                  [&](std::string* value) { *value = source.text; },
                  [&](double* value) { *value = toDouble(source, source.text); },
                  [&](std::optional<double>* value) { *value = toDouble(source, source.text); },

@@ -75,6 +75,12 @@ using Binding =
 inline constexpr unsigned kMustBeGiven = 1;
 inline constexpr unsigned kKeepsResult = 2;  // cannot change the bytes of the result: left out of provenance
 inline constexpr unsigned kNotInHelp = 4;
+// What names a file to write; run() refuses one that is also an input or another output. -o, --stats and --depfile have
+// it.
+inline constexpr unsigned kIsOutput = 8;
+// What may name a file to read; positionals and options whose value is called FILE need not say so.
+inline constexpr unsigned kIsInput = 16;
+inline constexpr unsigned kMayBeInfinite = 32;  // a number may also be an infinity or NaN
 
 struct Option {
   std::string flags;       // "-o,--output"; a positional has its name here
@@ -148,9 +154,13 @@ std::string helpText(const Command& command);
 // prints
 //   program: file: place: what
 //   program: remedy
-// to stderr and returns the fault's exit code. SIGINT and SIGTERM ask the body to stop at the next progress step, a
-// second one kills. Writes --stats and --depfile after a body that returned 0 or 5.
+// to stderr and returns the fault's exit code. Outputs that are inputs are refused first. SIGINT, SIGTERM and SIGHUP
+// ask the body to stop at the next progress step, a second one kills. Writes --stats and --depfile after a body that
+// returned 0 or 5.
 int run(int argc, char** argv, Command& command, const std::function<int(Session&)>& body);
+
+// Throws Error{kUsage} if -o names a file that does not end in `suffix` (".t4h"); `remedy` says what to do instead.
+void expectSuffix(const Session& session, std::string_view suffix, std::string_view remedy);
 
 // The one of `words` nearest to `word` (Damerau-Levenshtein), empty if none is near enough to be meant.
 std::string nearest(std::string_view word, const std::vector<std::string>& words);

@@ -60,7 +60,7 @@ Command& Command::common(std::initializer_list<Common> which) {
       case kOutput:
       case kOutputRequired:
         option("-o,--output", "FILE", "where to write", &common_.output,
-               kKeepsResult | (one == kOutputRequired ? kMustBeGiven : 0));
+               kKeepsResult | kIsOutput | (one == kOutputRequired ? kMustBeGiven : 0));
         break;
       case kThreads:
         option("-j,--threads", "N", "threads to use; 0 = one per core; the output does not depend on it",
@@ -87,10 +87,11 @@ Command& Command::common(std::initializer_list<Common> which) {
         option("--seed", "N", "seed of every random choice", &common_.seed);
         break;
       case kStats:
-        option("--stats", "FILE", "write times, memory and counts as JSON", &common_.stats, kKeepsResult);
+        option("--stats", "FILE", "write times, memory and counts as JSON", &common_.stats, kKeepsResult | kIsOutput);
         break;
       case kDepfile:
-        option("--depfile", "FILE", "write the output's inputs as a Makefile rule", &common_.depfile, kKeepsResult);
+        option("--depfile", "FILE", "write the output's inputs as a Makefile rule", &common_.depfile,
+               kKeepsResult | kIsOutput);
         break;
     }
   }

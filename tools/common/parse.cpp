@@ -35,11 +35,11 @@ std::vector<CLI::Option*> declare(CLI::App& app, const Command& command) {
     }
     const auto collect = [](const CLI::results_t&) { return true; };
     CLI::Option* one = app.add_option(option.flags, collect)->type_name(option.value_name);
-    if (!takesMany(option.binding)) {
+    if (!takesMany(option.binding) && option.positional) {
       one->expected(1);
     } else if (option.positional) {
       one->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
-    } else {
+    } else {  // one given twice is refused by refuseTwice(), in our words
       one->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->allow_extra_args(false);
     }
     if (option.positional) one->configurable(false);
@@ -75,10 +75,27 @@ void refuseLostDash(int argc, const char* const* argv, const Command& command) {
   fail(word, "there is no such option", meant.empty() ? "see --help" : fmt::format("did you mean {}?", meant));
 }
 
+void refuseTwice(const Option& option, const std::vector<std::string>& texts) {
+  if (texts.size() <= 1 || option.value_name.empty() || takesMany(option.binding)) return;
+  fail(shownName(option), fmt::format("is given {} times", texts.size()), "give it once");
+}
+
 void requireReadable(const std::string& config) {
   if (config.empty()) return;
   if (!std::ifstream(config))
     throw Error(FaultCode::kIo, config, {}, "cannot be read", "check the name given to --config");
+}
+
+// A line of a file of options that makes no sense; CLI11's message is "… parse NAME" or "NAME: … not allowed …".
+[[noreturn]] void failConfig(const Command& command, const std::string& file, const std::string& message) {
+  const std::size_t colon = message.find(": ");
+  const std::string word =
+      colon != std::string::npos ? message.substr(0, colon) : message.substr(message.find_last_of(' ') + 1);
+  const std::string meant = colon != std::string::npos ? std::string() : nearest("--" + word, spellings(command));
+  throw Error(
+      FaultCode::kUsage, file, "--config",
+      fmt::format("'{}' is no option that a file can give; wanted are lines 'name = value'", word),
+      meant.empty() ? "name options as --help does, without dashes" : fmt::format("did you mean {}?", meant.substr(2)));
 }
 
 void parseInto(CLI::App& app, CLI::Option* config, int argc, const char* const* argv, const Command& command) {
@@ -88,11 +105,13 @@ void parseInto(CLI::App& app, CLI::Option* config, int argc, const char* const* 
     requireReadable(config->empty() ? std::string() : config->results().back());
     fail("--config", "is not a readable file");
   } catch (const CLI::ConfigError& error) {
-    // CLI11 names the entry last in its message.
-    const std::string text = error.what();
-    const std::string word = text.substr(text.find_last_of(' ') + 1);
-    const std::string meant = nearest("--" + word, spellings(command));
-    fail("--config", text, meant.empty() ? "see --help" : fmt::format("did you mean {}?", meant.substr(2)));
+    failConfig(command, config->empty() ? std::string() : config->results().back(), error.what());
+  } catch (const CLI::ArgumentMismatch& error) {
+    // "--iso: 1 required TEXT missing": repeated options are ours, so that a value is missing is all that is left; and
+    // "--json was given a disallowed flag override".
+    const std::string text = error.what(), name = text.substr(0, text.find_first_of(": "));
+    const bool is_flag = text.find("flag override") != std::string::npos;
+    fail(name, is_flag ? "takes no value" : "needs a value");
   } catch (const CLI::ParseError& error) {
     fail({}, error.what());
   }
@@ -134,6 +153,7 @@ Parsed parse(int argc, const char* const* argv, Command& command) {
 
   for (std::size_t i = 0; i < options.size(); ++i) {
     const std::vector<std::string> texts = declared[i]->results();
+    refuseTwice(options[i], texts);
     if (!texts.empty()) {
       assign(options[i], shownName(options[i]), texts);
     } else if ((options[i].traits & kMustBeGiven) != 0) {

@@ -9,6 +9,7 @@
 #include "libpreprocess/outofcore/output_file.h"
 #include "tools/common/cli.h"
 #include "tools/common/exit_codes.h"
+#include "tools/common/files.h"
 
 namespace tet4d::cli {
 
@@ -26,6 +27,8 @@ void onSignal(int signal) {
 void installSignals() {
   std::signal(SIGINT, onSignal);
   std::signal(SIGTERM, onSignal);
+  // Under nohup it stays ignored.
+  if (std::signal(SIGHUP, onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   // A closed pipe and a file at its size limit are errors of the write, reported like any other.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
@@ -80,6 +83,7 @@ int parseAndRun(int argc, char** argv, Command& command, const std::function<int
       std::puts((command.program() + " " TET4D_VERSION).c_str());
       break;
     case Parsed::kRun:
+      refuseOverlaps(command);
       return runSession(command, body);
   }
   flushStandardOutput();

@@ -95,6 +95,7 @@ struct Session::State {
 Session::Session(const Command& command) : state_(std::make_unique<State>(command)) {}
 Session::~Session() = default;
 
+const std::string& Session::program() const { return state_->command.program(); }
 const CommonOptions& Session::options() const { return state_->command.commonOptions(); }
 outofcore::Progress& Session::progress() { return state_->progress; }
 outofcore::MemoryBudget& Session::memory() { return state_->memory; }

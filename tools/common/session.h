@@ -77,6 +77,7 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
+  const std::string& program() const;
   const CommonOptions& options() const;
   outofcore::Executor& executor();  // started at first use, with -j threads
   outofcore::Progress& progress();
