@@ -1,6 +1,7 @@
 // tet4d-play: dynamic triangles → pictures. Ponchio & Hormann 2008, sec. 7.1.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -10,8 +11,10 @@
 #include "formats/core/time_spec.h"
 #include "formats/hypermesh.h"
 #include "libpreprocess/error.h"
+#include "player/host/memory_plan.h"
 #include "player/host/offscreen_gl.h"
 #include "player/host/output_file.h"
+#include "player/host/output_names.h"
 #include "player/host/playback.h"
 #include "player/host/png.h"
 #include "player/scene/shot_file.h"
@@ -58,9 +61,56 @@ scene::Shot shotOf(const Options& options, const dyntri::File& file) {
   return options.camera.empty() ? fitted : unwrap(scene::readShot(options.camera, fitted));
 }
 
+bool endsIn(const std::string& path, const std::string& suffix) {
+  return std::filesystem::path(path).extension() == suffix;
+}
+
 bool isY4m(const Options& options, const std::string& output) {
   if (options.format != "auto") return options.format == "y4m";
-  return output == "-" || std::filesystem::path(output).extension() == ".y4m";
+  return host::isStream(output) || endsIn(output, ".y4m");
+}
+
+// A name promises what is in the file.
+void checkSuffixes(const Options& options, const std::string& output) {
+  const std::string& sheet = options.contact_sheet;
+  if (!sheet.empty() && !endsIn(sheet, ".png") && !host::isStream(sheet)) {
+    throw Error(FaultCode::kUsage, sheet, "--contact-sheet", "is written as PNG, under a name that ends in .png",
+                "give --contact-sheet sheet.png");
+  }
+  if (output.empty() || host::isStream(output)) return;
+  const bool is_y4m = isY4m(options, output);
+  if (endsIn(output, is_y4m ? ".y4m" : ".png")) return;
+  throw Error(FaultCode::kUsage, output, "--output",
+              is_y4m ? "is written as y4m, to a name that ends in .y4m, a pipe or -"
+                     : "is none of what the player writes: PNG pictures (.png) or a y4m film (.y4m, a pipe or -)",
+              "give -o frames/%05d.png or -o film.y4m");
+}
+
+void checkNumbers(const Options& options) {
+  if (!std::isfinite(options.orbit_degrees)) {
+    throw Error(FaultCode::kUsage, "", "--orbit", "expected a finite number of degrees", "give --orbit 90");
+  }
+  if (!std::isfinite(options.fps) || options.fps <= 0) {
+    throw Error(FaultCode::kUsage, "", "--fps", "expected a finite number above 0", "give --fps 25");
+  }
+}
+
+// Before any work: no output replaces an input, another output or, unless forced, an older file.
+void checkNames(const Options& options, const cli::CommonOptions& common, std::size_t frames) {
+  std::vector<host::NamedPath> outputs{{"--stats", common.stats},
+                                       {"--depfile", common.depfile},
+                                       {"--write-camera", options.write_camera},
+                                       {"--contact-sheet", options.contact_sheet}};
+  if (isY4m(options, common.output)) {
+    outputs.push_back({"--output", common.output});
+  } else if (!common.output.empty() && common.output != "-") {
+    for (std::size_t i = 0; i < frames && (i == 0 || host::hasNumber(common.output)); ++i)
+      outputs.push_back({"--output", unwrap(host::frameName(common.output, i))});
+  }
+  unwrap(host::checkNamesDiffer(
+      {{"the input", options.input}, {"--camera", options.camera}, {"--config", common.config}}, outputs));
+  for (const std::string& path : {options.write_camera, options.contact_sheet})
+    if (!path.empty()) unwrap(host::checkMayWrite(path, common.force));
 }
 
 // Null if no film is asked for, only a contact sheet or a camera file.
@@ -82,22 +132,27 @@ void drawAll(cli::Session& session, const Options& options, const dyntri::File& 
   const cli::CommonOptions& common = session.options();
   std::vector<float> frame_numbers;
   for (const SliceTime& time : times) frame_numbers.push_back(sliceFrame(time.frame));
-  const host::Film film{shot,
-                        {options.size[0], options.size[1], static_cast<std::uint32_t>(options.samples)},
-                        !options.flat,
-                        options.orbit_degrees,
-                        frame_numbers};
+  host::Film film{shot,
+                  {options.size[0], options.size[1], static_cast<std::uint32_t>(options.samples)},
+                  !options.flat,
+                  options.orbit_degrees,
+                  frame_numbers};
   unwrap(render::sampleGrid(film.format));
-  // Half of the memory allowed for decoded pages, half for the driver's copies of them.
-  const std::uint64_t budget_bytes = session.memory().available() / 2;
+  std::optional<host::ContactSheet> sheet;
+  if (!options.contact_sheet.empty()) sheet.emplace(options.columns, times.size(), options.tiles);
+  const bool is_gl = options.renderer == "gl";
+  const host::MemoryPlan plan = host::planMemory(file, film, sheet ? &*sheet : nullptr, is_gl);
+  outofcore::MemoryBudget& memory = session.memory();
+  const auto pictures = memory.reserve(plan.pictures, "a picture with its samples (--size, --samples)");
+  const auto tiles = memory.reserve(plan.sheet, "the contact sheet");
+  const auto normals = memory.reserve(plan.normals, "summing normals (--flat does without)");
+  const auto pages = memory.reserve(plan.frame_pages, "the pages of one picture");
+  // What is left keeps pages of earlier pictures, and half of it holds the triangles of a picture drawn in plain C++.
+  const std::uint64_t budget_bytes = memory.available() / 2;
+  film.triangle_bytes = budget_bytes;
   auto renderer = unwrap(
       host::makeOffscreenRenderer(options.renderer, static_cast<unsigned>(session.executor().threads()), budget_bytes));
   const std::unique_ptr<host::FrameSink> sink = sinkOf(options, common, times.size());
-  std::optional<host::ContactSheet> sheet;
-  if (!options.contact_sheet.empty()) {
-    unwrap(host::checkMayWrite(options.contact_sheet, common.force));
-    sheet.emplace(options.columns, times.size(), options.tiles);
-  }
   stream::PageSource source(file, budget_bytes);
   session.progress().phase("draw", times.size());
   unwrap(host::play(
@@ -121,12 +176,15 @@ int play(cli::Session& session, const Options& options) {
     throw Error(FaultCode::kUsage, "", "", "no output is named",
                 "give -o frames/%05d.png, -o film.y4m, --contact-sheet or --write-camera");
   }
+  checkNumbers(options);
+  checkSuffixes(options, common.output);
   const dyntri::File file = openInput(options.input);
   session.dependsOn(options.input);
   if (!options.camera.empty()) session.dependsOn(options.camera);
   if (file.header().triangles == 0)
     session.warn(options.input + " has no triangles: pictures show the background only");
   const std::vector<SliceTime> times = timesOf(options, file.times());
+  checkNames(options, common, times.size());
   const scene::Shot shot = shotOf(options, file);
   session.stats().expectFrames();
   session.stats().count("triangles", file.header().triangles);
@@ -160,7 +218,7 @@ int main(int argc, char** argv) {
       .option("--orbit", "DEG", "turn of the camera about the vertical over the whole film", &o.orbit_degrees)
       .option("--write-camera", "FILE", "write the camera, as --camera reads it", &o.write_camera)
       .heading("Film")
-      .option("--format", "WHAT", "of the output; auto: y4m for - and .y4m, else png",
+      .option("--format", "WHAT", "of the output; auto: by the name's end .png or .y4m, y4m for - and pipes",
               cli::Choice{&o.format, {"auto", "png", "y4m"}})
       .option("--fps", "N", "pictures a second of a y4m film", &o.fps)
       .option("--contact-sheet", "FILE", "all pictures in one PNG, scaled down", &o.contact_sheet)

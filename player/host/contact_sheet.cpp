@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "player/host/png.h"
+
 namespace tet4d::host {
 namespace {
 
@@ -23,6 +25,19 @@ std::uint32_t ContactSheet::tileWidth(std::uint32_t frame_width) const {
   return std::clamp(fitting, 1u, frame_width);
 }
 
+std::uint32_t ContactSheet::tileHeight(std::uint32_t frame_width, std::uint32_t frame_height) const {
+  const std::uint64_t width = tileWidth(frame_width);
+  const std::uint64_t height = (2 * frame_height * width + frame_width) / (std::uint64_t{2} * frame_width);
+  return std::clamp(static_cast<std::uint32_t>(height), 1u, frame_height);
+}
+
+std::uint64_t ContactSheet::bytes(std::uint32_t frame_width, std::uint32_t frame_height) const {
+  const std::uint64_t width = tileWidth(frame_width), height = tileHeight(frame_width, frame_height);
+  const std::uint64_t rows = (tiles_wanted_ + columns_ - 1) / columns_;
+  const std::uint64_t sheet_pixels = (columns_ * (width + kGap) + kGap) * (rows * (height + kGap) + kGap);
+  return 4 * width * height * tiles_wanted_ + sheet_pixels * (4 + kEncodingBytes);
+}
+
 void ContactSheet::add(const render::Image& frame) {
   const std::size_t number = seen_++;
   // Tile k shows frame round(k * (frames - 1) / (tiles - 1)).
@@ -30,10 +45,7 @@ void ContactSheet::add(const render::Image& frame) {
   if (k >= tiles_wanted_) return;
   const std::size_t steps = std::max<std::size_t>(tiles_wanted_ - 1, 1);
   if (number < (2 * k * (frames_ - 1) + steps) / (2 * steps)) return;
-  const std::uint32_t width = tileWidth(frame.width);
-  const auto height = static_cast<std::uint32_t>((std::uint64_t{2} * frame.height * width + frame.width) /
-                                                 (std::uint64_t{2} * frame.width));
-  tiles_.push_back(render::scaleDown(frame, width, std::clamp(height, 1u, frame.height)));
+  tiles_.push_back(render::scaleDown(frame, tileWidth(frame.width), tileHeight(frame.width, frame.height)));
 }
 
 render::Image ContactSheet::compose() const {

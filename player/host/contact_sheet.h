@@ -18,9 +18,12 @@ class ContactSheet {
   void add(const render::Image& frame);
   // The sheet; tiles on white with a gap between them. About 1920 pixels wide, never larger than the frames.
   render::Image compose() const;
+  // The most that tiles, sheet and its encoding take, for frames of this size.
+  std::uint64_t bytes(std::uint32_t frame_width, std::uint32_t frame_height) const;
 
  private:
   std::uint32_t tileWidth(std::uint32_t frame_width) const;
+  std::uint32_t tileHeight(std::uint32_t frame_width, std::uint32_t frame_height) const;
 
   std::size_t columns_, frames_, tiles_wanted_;
   std::size_t seen_ = 0;

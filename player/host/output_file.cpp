@@ -1,5 +1,6 @@
 #include "player/host/output_file.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -10,9 +11,16 @@
 namespace tet4d::host {
 
 Status checkMayWrite(const std::string& path, bool force) {
-  std::error_code ignored;
-  if (path == "-" || force || !std::filesystem::exists(path, ignored)) return {};
+  struct stat info {};
+  if (path == "-" || ::stat(path.c_str(), &info) != 0) return {};
+  if (S_ISDIR(info.st_mode)) return Fault{FaultCode::kIo, path, "", "is a directory", "give a file's name"};
+  if (force || !S_ISREG(info.st_mode)) return {};
   return Fault{FaultCode::kUsage, path, "", "exists already and is kept", "give --force to replace it"};
+}
+
+bool isStream(const std::string& path) {
+  struct stat info {};
+  return path == "-" || (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode));
 }
 
 OutputFile::OutputFile(std::string path, std::string temporary, std::FILE* file)
@@ -27,11 +35,13 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
   if (path == "-") return OutputFile(path, "", stdout);
   if (Status status = checkMayWrite(path, force); !status.ok()) return status.fault();
   std::error_code error;
+  // A pipe or device is written itself: a file renamed over it would never reach its reader.
+  const bool is_stream = isStream(path);
   const std::filesystem::path directory = std::filesystem::path(path).parent_path();
   if (!directory.empty()) std::filesystem::create_directories(directory, error);
   // The process number keeps two runs apart; it is gone once the file has its name.
-  const std::string temporary = path + "." + std::to_string(::getpid()) + ".part";
-  std::FILE* file = error ? nullptr : std::fopen(temporary.c_str(), "wb");
+  const std::string temporary = is_stream ? "" : path + "." + std::to_string(::getpid()) + ".part";
+  std::FILE* file = error ? nullptr : std::fopen(is_stream ? path.c_str() : temporary.c_str(), "wb");
   if (file == nullptr) {
     const std::string reason = error ? error.message() : std::strerror(errno);
     return Fault{FaultCode::kIo, path, "", "cannot be created: " + reason,
@@ -41,9 +51,9 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
 }
 
 OutputFile::~OutputFile() {
-  if (file_ == nullptr || temporary_.empty()) return;
+  if (file_ == nullptr || file_ == stdout) return;
   std::fclose(file_);
-  std::remove(temporary_.c_str());
+  if (!temporary_.empty()) std::remove(temporary_.c_str());
 }
 
 Fault OutputFile::fault(const char* what) const {
@@ -59,11 +69,12 @@ Status OutputFile::write(std::span<const std::byte> bytes) {
 
 Status OutputFile::commit() {
   if (std::fflush(file_) != 0) return fault("cannot be written");
-  if (temporary_.empty()) return {};
+  if (file_ == stdout) return {};
   const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+  if (closed && temporary_.empty()) return {};
   if (closed && std::rename(temporary_.c_str(), path_.c_str()) == 0) return {};
   const Fault why = fault(closed ? "cannot be renamed" : "cannot be written");
-  std::remove(temporary_.c_str());
+  if (!temporary_.empty()) std::remove(temporary_.c_str());
   return why;
 }
 

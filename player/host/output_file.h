@@ -1,4 +1,5 @@
-// A file written beside its final name and renamed when it is complete; or standard output.
+// A file written beside its final name and renamed when it is complete; standard output, pipes and devices are written
+// directly.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +11,12 @@
 
 namespace tet4d::host {
 
-// A Fault (kUsage) if `path` exists and `force` is false.
+// A Fault (kUsage) if `path` is a file that exists and `force` is false; kIo if it is a directory. A pipe or device may
+// always be written.
 Status checkMayWrite(const std::string& path, bool force);
+
+// True for "-" and for a pipe or device that exists.
+bool isStream(const std::string& path);
 
 class OutputFile {
  public:
@@ -23,7 +28,7 @@ class OutputFile {
   ~OutputFile();
 
   Status write(std::span<const std::byte> bytes);
-  // Flushes and renames.
+  // Flushes and, for a file, renames.
   Status commit();
 
  private:

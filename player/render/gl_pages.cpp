@@ -41,7 +41,7 @@ Result<const GlPage*> GlPages::get(std::size_t number, const dyntri::PageView& p
       return Fault{FaultCode::kOutOfMemory, "", "page " + std::to_string(number),
                    "a table of " + std::to_string(texels) + " texels exceeds the driver's limit of " +
                        std::to_string(most_texels),
-                   "use --renderer cpu, or build the file with smaller pages"};
+                   "use --renderer cpu"};
     }
     copy.buffers[unit] = GlBuffer::create();
     copy.textures[unit] = GlTexture::create();

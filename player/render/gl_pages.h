@@ -27,7 +27,11 @@ struct GlPage {
 class GlPages {
  public:
   explicit GlPages(std::uint64_t budget_bytes) : budget_bytes_(budget_bytes) {}
-  void beginFrame() { ++frame_; }
+  // Copies of earlier frames beyond the budget go now, so that the new frame's come on top of no more than that.
+  void beginFrame() {
+    ++frame_;
+    evict();
+  }
   // The copy of page `number`, made from `page` if there is none. Fault if a table exceeds the driver's limit.
   Result<const GlPage*> get(std::size_t number, const dyntri::PageView& page);
   // Drops the copies used longest ago, none of this frame, until the budget holds.
