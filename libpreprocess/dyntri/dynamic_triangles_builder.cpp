@@ -36,26 +36,52 @@ void appendTriangles(const hypermesh::Tet& tet, std::span<const Vec4f> positions
   }
 }
 
-// Numbers keys 0, 1, … in the order in which they first appear. `keys` is consumed.
+// Numbers keys 0, 1, … in the order in which they first appear: open addressing with linear probing, at most half full.
+// The numbers depend on the order of the calls alone, never on where the keys come to lie.
 class FirstUse {
  public:
-  explicit FirstUse(std::vector<std::uint64_t> keys) : sorted_(std::move(keys)) {
-    std::sort(sorted_.begin(), sorted_.end());
-    sorted_.erase(std::unique(sorted_.begin(), sorted_.end()), sorted_.end());
-    number_.assign(sorted_.size(), kNone);
-  }
+  FirstUse() { slots_.resize(std::size_t{1} << kFirstBits, {kFree, 0}); }
   // The number of `key`; `fresh` says that it was given just now.
-  std::uint32_t number(std::uint64_t key, bool& fresh) {
-    const auto at = static_cast<std::size_t>(std::lower_bound(sorted_.begin(), sorted_.end(), key) - sorted_.begin());
-    fresh = number_[at] == kNone;
-    if (fresh) number_[at] = next_++;
-    return number_[at];
+  std::uint32_t number(EdgeKey key, bool& fresh) {
+    std::size_t at = place(key);
+    fresh = slots_[at].key == kFree;
+    if (!fresh) return slots_[at].number;
+    if (2 * (std::size_t{next_} + 1) > slots_.size()) {
+      grow();
+      at = place(key);
+    }
+    slots_[at] = {key, next_};
+    return next_++;
+  }
+  // Bytes held at most for so many keys, while the table grows too.
+  static std::uint64_t boundMemory(std::uint64_t keys) {
+    return (std::max<std::uint64_t>(4 * keys, 1U << kFirstBits) * 3 / 2) * sizeof(Slot);
   }
 
  private:
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint64_t> sorted_;
-  std::vector<std::uint32_t> number_;
+  // No edge joins the last possible vertex to itself.
+  static constexpr EdgeKey kFree = std::numeric_limits<EdgeKey>::max();
+  static constexpr unsigned kFirstBits = 10;
+  struct Slot {
+    EdgeKey key;
+    std::uint32_t number;
+  };
+
+  std::size_t place(EdgeKey key) const {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t at = (key ^ key >> 29) * 0x9E3779B97F4A7C15U >> 20 & mask;
+    while (slots_[at].key != kFree && slots_[at].key != key) at = (at + 1) & mask;
+    return at;
+  }
+  void grow() {
+    std::vector<Slot> old(2 * slots_.size(), {kFree, 0});
+    old.swap(slots_);
+    for (const Slot& slot : old) {
+      if (slot.key != kFree) slots_[place(slot.key)] = slot;
+    }
+  }
+
+  std::vector<Slot> slots_;
   std::uint32_t next_ = 0;
 };
 
@@ -68,11 +94,7 @@ BuiltPage buildPage(std::span<const hypermesh::Tet> tets, std::span<const Vec4f>
   std::stable_sort(raw.begin(), raw.end(),
                    [](const RawTriangle& a, const RawTriangle& b) { return a.life.begin < b.life.begin; });
 
-  std::vector<std::uint64_t> keys;
-  keys.reserve(3 * raw.size());
-  for (const RawTriangle& triangle : raw) keys.insert(keys.end(), triangle.edges.begin(), triangle.edges.end());
-  FirstUse edge_numbers(std::move(keys));
-
+  FirstUse edge_numbers;
   BuiltPage page;
   page.tets = tets.size();
   page.empty = boundTriangles(tets.size()) - raw.size();
@@ -104,9 +126,11 @@ BuiltPage buildPage(std::span<const hypermesh::Tet> tets, std::span<const Vec4f>
 }
 
 std::uint64_t boundPageMemory(std::uint64_t tets, std::uint64_t vertices) {
-  // Raw triangles and the buffer of the stable sort, edge keys, numbers, the page itself and its encoded copy.
-  const std::uint64_t per_triangle = 2 * sizeof(RawTriangle) + 3 * (sizeof(EdgeKey) + 4) + 2 * (3 * 8 + 8 + 12);
-  return boundTriangles(tets) * per_triangle + vertices * (2 * sizeof(Vec4f) + 4) + tets * sizeof(hypermesh::Tet);
+  // Raw triangles and the buffer of the stable sort (whose place the encoded page takes later), the page itself, the
+  // table of edges, of which a tetrahedron has six.
+  const std::uint64_t per_triangle = 2 * sizeof(RawTriangle) + sizeof(Lifespan) + sizeof(Triangle);
+  return boundTriangles(tets) * per_triangle + 2 * 6 * tets * sizeof(Edge) + FirstUse::boundMemory(6 * tets) +
+         vertices * (2 * sizeof(Vec4f) + 4) + tets * sizeof(hypermesh::Tet);
 }
 
 std::uint64_t boundBuildMemory(const hypermesh::File& mesh, std::size_t pages_in_flight) {
