@@ -84,8 +84,7 @@ class Y4mFilm final : public FrameSink {
 
 Result<std::unique_ptr<FrameSink>> makeY4mFilm(const std::string& path, double fps, bool force) {
   if (!(fps >= 0.001 && fps <= 1e6)) {
-    return Fault{FaultCode::kUsage, path, "fps",
-                 "found " + std::to_string(fps) + ", expected a number from 0.001 to 1e6", "give --fps 25"};
+    return Fault{FaultCode::kUsage, path, "fps", "not between 0.001 and 1e6 pictures a second", "give --fps 25"};
   }
   auto file = OutputFile::create(path, force);
   if (!file.ok()) return file.fault();
