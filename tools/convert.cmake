@@ -1,1 +1,2 @@
-tet4d_add_program(tet4d-convert SOURCES tet4d-convert.cpp DEPENDS tet4d::exchange tet4d::cli)
+tet4d_add_program(tet4d-convert SOURCES tet4d-convert.cpp convert/frames.cpp convert/slices.cpp
+                  DEPENDS tet4d::exchange tet4d::cli)
