@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libpreprocess/error.h"
+#include "libpreprocess/exchange/frame_file.h"
 #include "libpreprocess/exchange/printf_pattern.h"
 
 namespace tet4d::exchange {
@@ -79,13 +80,19 @@ bool naturalLess(const std::string& a, const std::string& b) {
 std::vector<std::string> filesOfDirectory(const std::string& directory) {
   std::vector<std::string> files;
   for (const std::string& name : namesIn(directory)) {
-    if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) files.push_back((fs::path(directory) / name).string());
+    if (!frameFormatOf(name).empty()) files.push_back((fs::path(directory) / name).string());
   }
   if (files.empty()) {
-    throw Error(FaultCode::kBadInput, directory, "", "the directory holds no .nrrd or .nhdr files",
+    throw Error(FaultCode::kBadInput, directory, "", "the directory holds no " + frameSuffixes() + " files",
                 "name the frames' files");
   }
   std::sort(files.begin(), files.end(), naturalLess);
+  for (const std::string& file : files) {
+    if (frameFormatOf(file) == frameFormatOf(files.front())) continue;
+    throw Error(FaultCode::kBadInput, directory, "",
+                "holds files of two formats, " + files.front() + " and " + file + " among them",
+                "give a pattern of one of them, such as a_%04d.nrrd");
+  }
   return files;
 }
 

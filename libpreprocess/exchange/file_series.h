@@ -11,7 +11,8 @@ namespace tet4d::exchange {
 // "frame2" before "frame10": runs of digits compare as numbers, everything else by bytes.
 bool naturalLess(const std::string& a, const std::string& b);
 
-// The .nrrd and .nhdr files of a directory in natural order. Throws Error if there are none or it cannot be read.
+// The files of a directory that have a frame format's suffix, in natural order. Throws Error if there are none, files
+// of two formats, or it cannot be read.
 std::vector<std::string> filesOfDirectory(const std::string& directory);
 
 // The files that match a printf pattern (path with one %d …), by number. Throws Error if there are none.

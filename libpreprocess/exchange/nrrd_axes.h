@@ -7,12 +7,10 @@
 #include <vector>
 
 #include "formats/core/coordinates.h"
+#include "libpreprocess/exchange/frame_file.h"
 #include "libpreprocess/exchange/nrrd_fields.h"
 
 namespace tet4d::exchange {
-
-// More frames than this would not be exact as float32 frame numbers.
-inline constexpr std::uint64_t kMaxFrames = std::uint64_t{1} << 24;
 
 // What the header says of its axes.
 struct NrrdAxes {

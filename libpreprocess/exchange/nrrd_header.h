@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "libpreprocess/exchange/frame_source.h"
+#include "libpreprocess/exchange/frame_file.h"
 #include "libpreprocess/exchange/nrrd_fields.h"
 
 namespace tet4d::exchange {
@@ -36,15 +36,8 @@ struct NrrdData {
   std::string fileName(const std::string& header_path, std::uint64_t k) const;
 };
 
-struct NrrdHeader {
-  std::string path;
-  GridInfo grid;
-  bool has_frame_axis = false;  // dimension 4
-  std::uint64_t frames = 1;
-  std::vector<double> times;  // one per frame, or empty: the file tells none
+struct NrrdHeader : FrameFileHeader {  // has_frame_axis: dimension 4
   NrrdData data;
-
-  std::uint64_t frameBytes() const { return grid.voxels() * sampleBytes(grid.type); }
 };
 
 // Where the samples' bytes begin in a data file; for gzip, where the stream begins. Throws if lines to skip are

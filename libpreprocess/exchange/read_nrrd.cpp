@@ -43,7 +43,6 @@ struct NrrdFile::OpenFile {
 };
 
 NrrdFile::NrrdFile(const std::string& path) : header_(readNrrdHeader(path)) {}
-NrrdFile::NrrdFile(NrrdFile&&) noexcept = default;
 NrrdFile::~NrrdFile() = default;
 
 void NrrdFile::close() { open_.reset(); }
@@ -58,10 +57,12 @@ NrrdFile::OpenFile& NrrdFile::open(std::uint64_t file, std::uint64_t at) {
   return *open_;
 }
 
-void NrrdFile::readFrame(std::uint64_t k, std::span<std::byte> samples) {
-  assert(k < header_.frames && samples.size() == header_.frameBytes());
+void NrrdFile::readLayers(std::uint64_t frame, std::uint64_t z_begin, [[maybe_unused]] std::uint64_t z_end,
+                          std::span<std::byte> samples) {
+  assert(frame < header_.frames && z_begin <= z_end && z_end <= header_.grid.dims[2]);
+  assert(samples.size() == (z_end - z_begin) * header_.grid.layerBytes());
   const std::uint64_t file_bytes = header_.data.file_bytes;
-  std::uint64_t at = k * header_.frameBytes();
+  std::uint64_t at = frame * header_.frameBytes() + z_begin * header_.grid.layerBytes();
   for (auto rest = samples; !rest.empty();) {
     const std::uint64_t file = at / file_bytes, in_file = at % file_bytes;
     const auto part = rest.first(static_cast<std::size_t>(std::min<std::uint64_t>(rest.size(), file_bytes - in_file)));

@@ -1,4 +1,4 @@
-// NRRD files as frames: the header first, then any frame into the caller's buffer.
+// NRRD files as frames: the header first, then any layers into the caller's buffer.
 //
 // Raw data are read where they stand. Gzip data are decoded from front to back: frames read in order cost one pass, a
 // frame before the last one read costs a new start. Neither holds more than a fixed buffer.
@@ -13,20 +13,17 @@
 
 namespace tet4d::exchange {
 
-class NrrdFile {
+class NrrdFile final : public FrameFile {
  public:
   // Reads the header. Throws as readNrrdHeader().
   explicit NrrdFile(const std::string& path);
-  NrrdFile(NrrdFile&&) noexcept;
-  ~NrrdFile();
+  ~NrrdFile() override;
 
-  const NrrdHeader& header() const { return header_; }
-  // Reads frame k, header().frameBytes() bytes in native byte order. Throws Error{kBadInput} naming the data file and
-  // the byte: a file that has become short, a truncated or broken gzip stream, a wrong checksum (seen with a stream's
-  // last frame).
-  void readFrame(std::uint64_t k, std::span<std::byte> samples);
-  // Closes the data file that readFrame() keeps open.
-  void close();
+  const NrrdHeader& header() const override { return header_; }
+  // The checksum of a gzip stream is seen with its last layer.
+  void readLayers(std::uint64_t frame, std::uint64_t z_begin, std::uint64_t z_end,
+                  std::span<std::byte> samples) override;
+  void close() override;
 
  private:
   struct OpenFile;

@@ -87,8 +87,16 @@ std::string smallFile(const std::string& time_line, std::uint64_t first) {
 }
 
 std::vector<std::byte> frameOf(exchange::FrameSource& source, std::size_t k) {
-  std::vector<std::byte> samples(static_cast<std::size_t>(source.grid().voxels() * sampleBytes(source.grid().type)));
+  std::vector<std::byte> samples(static_cast<std::size_t>(source.grid().frameBytes()));
   source.readFrame(k, samples);
+  return samples;
+}
+
+std::vector<std::byte> frameByLayers(exchange::FrameSource& source, std::size_t k) {
+  const auto layer = static_cast<std::size_t>(source.grid().layerBytes());
+  std::vector<std::byte> samples(static_cast<std::size_t>(source.grid().frameBytes()));
+  for (std::uint64_t z = 0; z < source.grid().dims[2]; ++z)
+    source.readLayers(k, z, z + 1, std::span(samples).subspan(static_cast<std::size_t>(z) * layer, layer));
   return samples;
 }
 

@@ -29,5 +29,7 @@ std::string smallFile(const std::string& time_line = "", std::uint64_t first = 0
 
 // Frame k of a source, or of a file's frames.
 std::vector<std::byte> frameOf(exchange::FrameSource& source, std::size_t k);
+// The same, read one layer at a time.
+std::vector<std::byte> frameByLayers(exchange::FrameSource& source, std::size_t k);
 
 }  // namespace tet4d::testing

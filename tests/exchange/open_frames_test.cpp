@@ -14,6 +14,7 @@ namespace tet4d::exchange {
 namespace {
 
 using testing::faultOf;
+using testing::frameByLayers;
 using testing::frameOf;
 using testing::gzipped;
 using testing::nativeSamples;
@@ -31,7 +32,11 @@ std::vector<std::byte> expectedFrame(std::uint64_t k) { return nativeSamples(Sam
 void expectFrames(FrameSource& source, const std::vector<std::uint64_t>& frames, const Times& times) {
   EXPECT_EQ(source.times(), times);
   ASSERT_EQ(source.times().size(), frames.size());
+  EXPECT_FALSE(source.isStream());
+  EXPECT_TRUE(source.hasFrame(frames.size() - 1));
+  EXPECT_FALSE(source.hasFrame(frames.size()));
   for (std::size_t k = frames.size(); k-- > 0;) EXPECT_EQ(frameOf(source, k), expectedFrame(frames[k])) << k;
+  for (std::size_t k = 0; k < frames.size(); ++k) EXPECT_EQ(frameByLayers(source, k), expectedFrame(frames[k])) << k;
 }
 
 std::string messageOf(const Fault& fault) {
@@ -68,6 +73,30 @@ TEST(OpenFrames, DirectoriesAndPatternsAreInNaturalOrder) {
   scratch.write("padded/a_0008.nhdr", frameFile(8)), scratch.write("padded/a_0010.nhdr", frameFile(10));
   scratch.write("padded/a_9.nhdr", "is not of the pattern");
   expectFrames(*openFrames({scratch.path("padded/a_%04d.nhdr")}), {8, 10}, {0, 1});
+}
+
+TEST(OpenFrames, LayersInTheMiddleAlone) {
+  const Scratch scratch;
+  const std::string header = "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 1 5 2\nencoding: ";
+  const std::string samples = sampleText(SampleType::kU8, 20, false);
+  for (const std::string& text : {header + "raw\n\n" + samples, header + "gzip\n\n" + gzipped(samples)}) {
+    const auto source = openFrames({scratch.write("a.nrrd", text)});
+    std::vector<std::byte> two(4), one(2);
+    for (const std::size_t k : {1U, 0U}) {  // back to a frame before: a compressed stream begins anew
+      source->readLayers(k, 1, 3, two);
+      EXPECT_EQ(two, nativeSamples(SampleType::kU8, 4, 10 * k + 2));
+      source->readLayers(k, 4, 5, one);
+      EXPECT_EQ(one, nativeSamples(SampleType::kU8, 2, 10 * k + 8));
+    }
+  }
+}
+
+TEST(OpenFrames, FilesWithoutASuffixAreKnownByTheirFirstBytes) {
+  const Scratch scratch;
+  const std::string a = scratch.write("volume", frameFile(3));
+  expectFrames(*openFrames({a}), {3}, {0});
+  expectRefusal({scratch.write("letter", "Dear all")}, {"letter", "first bytes", ".nrrd"});
+  expectRefusal({scratch.write("nothing", "")}, {"nothing", "first bytes"});
 }
 
 TEST(OpenFrames, TimesOfTheFilesAndOfTheCaller) {

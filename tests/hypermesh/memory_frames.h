@@ -38,9 +38,11 @@ class MemoryFrames final : public exchange::FrameSource {
 
   const exchange::GridInfo& grid() const override { return grid_; }
   const std::vector<double>& times() const override { return times_; }
-  void readFrame(std::size_t k, std::span<std::byte> samples) override {
-    reads.push_back(k);
-    std::memcpy(samples.data(), samples_.data() + k * grid_.voxels(), grid_.voxels() * sizeof(T));
+  void readLayers(std::size_t k, std::uint64_t z_begin, std::uint64_t z_end, std::span<std::byte> samples) override {
+    if (z_begin == 0) reads.push_back(k);
+    const std::uint64_t layer = grid_.dims[0] * grid_.dims[1];
+    std::memcpy(samples.data(), samples_.data() + k * grid_.voxels() + z_begin * layer,
+                (z_end - z_begin) * layer * sizeof(T));
   }
   std::string frameName(std::size_t k) const override { return "memory frame " + std::to_string(k); }
 

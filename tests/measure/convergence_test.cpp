@@ -31,12 +31,12 @@ class BallFrames final : public exchange::FrameSource {
   }
   const exchange::GridInfo& grid() const override { return grid_; }
   const std::vector<double>& times() const override { return times_; }
-  void readFrame(std::size_t k, std::span<std::byte> samples) override {
+  void readLayers(std::size_t k, std::uint64_t z_begin, std::uint64_t z_end, std::span<std::byte> samples) override {
     auto* out = reinterpret_cast<float*>(samples.data());
     const std::uint64_t n = grid_.dims[0];
-    for (std::uint64_t i = 0; i < n * n * n; ++i) {
+    for (std::uint64_t i = z_begin * n * n; i < z_end * n * n; ++i) {
       const auto x = static_cast<double>(i % n), y = static_cast<double>(i / n % n), z = static_cast<double>(i / n / n);
-      out[i] = static_cast<float>(ball_.fieldAt(x, y, z, static_cast<double>(k)));
+      *out++ = static_cast<float>(ball_.fieldAt(x, y, z, static_cast<double>(k)));
     }
   }
   std::string frameName(std::size_t k) const override { return "ball frame " + std::to_string(k); }

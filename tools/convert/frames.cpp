@@ -25,7 +25,7 @@ void convertFrames(cli::Session& session, const Options& options) {
     failUsage("--at, --times and --normals are for slices of a hypermesh",
               "make one first: tet4d-mc FRAMES --iso V -o X.t4h");
   }
-  const auto frames = exchange::openFrames(options.inputs, {options.allow_gaps, options.frame_times});
+  const auto frames = exchange::openFrames(options.inputs, {options.allow_gaps, options.frame_times, {}});
   if (suffix == ".t4g") {
     const paged::Codec codec = options.codec == "zstd" ? paged::Codec::kZstd : paged::Codec::kRaw;
     const auto provenance = [&](std::uint64_t digest) {

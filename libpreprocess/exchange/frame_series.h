@@ -1,0 +1,23 @@
+// Frame files as sequences: one file a frame, or all frames in one file. Which files, and in which order, is decided
+// before (open_frames, or a format's own list of files).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libpreprocess/exchange/frame_source.h"
+
+namespace tet4d::exchange {
+
+// Files of one frame each, in the order given; all of one grid and type, and their times growing. Headers stay in
+// memory, one data file is open at a time. Throws Error naming the file.
+std::unique_ptr<FrameSource> openFileSeries(const std::vector<std::string>& names, const FrameSourceOptions& options);
+
+// All frames of one file.
+std::unique_ptr<FrameSource> openFileMovie(std::unique_ptr<FrameFile> file, const FrameSourceOptions& options);
+
+// Proves that times given by the caller are as many as frames and growing. Throws Error{kUsage}.
+void checkGivenTimes(const std::vector<double>& times, std::size_t frames);
+
+}  // namespace tet4d::exchange
