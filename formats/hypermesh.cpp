@@ -1,7 +1,6 @@
 #include "formats/hypermesh.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "formats/page_layout.h"
 
@@ -28,23 +27,6 @@ const char* checkHeader(const MeshHeader& h) {
 // A page is never empty, so that of a column without vertices is one part of zeros.
 std::uint64_t columnBytes(std::uint64_t bytes) {
   return std::max<std::uint64_t>(page_layout::padded(bytes), page_layout::kPartAlignment);
-}
-
-// What is wrong with the columns, or null.
-const char* checkColumns(std::span<const ColumnEntry> columns) {
-  std::vector<std::string_view> names;
-  for (const ColumnEntry& c : columns) {
-    const std::size_t length = strnlen(c.name, sizeof c.name);
-    const bool padded = std::all_of(c.name + length, c.name + sizeof c.name, [](char ch) { return ch == 0; });
-    if (length == 0 || length == sizeof c.name || !padded)
-      return "a column's name is empty, too long or not zero-padded";
-    if (c.components < 1 || c.components > 4) return "a column has impossible components";
-    if (c.reserved != 0) return "reserved bytes are not zero";
-    names.emplace_back(c.name, length);
-  }
-  std::sort(names.begin(), names.end());
-  if (std::adjacent_find(names.begin(), names.end()) != names.end()) return "two columns have the same name";
-  return nullptr;
 }
 
 // Every geometry page, in the order of its vertices, then its column pages.
@@ -284,11 +266,7 @@ Result<Writer> Writer::create(const std::string& path, const MeshHeader& header,
   checked.bounds = page_layout::stored({});
   if (const char* what = checkHeader(checked)) return Fault{FaultCode::kUsage, path, "section HHDR", what, ""};
   if (Status s = page_layout::checkTimes(times, times.size(), path); !s.ok()) return s.fault();
-  std::vector<ColumnEntry> entries(columns.size());
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    columns[c].name.copy(entries[c].name, sizeof entries[c].name);
-    entries[c].components = columns[c].components;
-  }
+  std::vector<ColumnEntry> entries = columnEntries(columns);
   if (const char* what = checkColumns(entries)) return Fault{FaultCode::kUsage, path, "section COLS", what, ""};
   auto file = container::Writer::create(path, kPayload, kVersion, force);
   if (!file.ok()) return file.fault();

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/columns.h"
 #include "formats/core/coordinates.h"
 #include "formats/paged.h"
 
@@ -51,12 +52,7 @@ struct MeshHeader {
 static_assert(sizeof(MeshHeader) == 256 && offsetof(MeshHeader, isovalue) == 192 &&
               offsetof(MeshHeader, domain) == 128);
 
-struct ColumnEntry {
-  char name[56];             // @0  UTF-8, zero-padded, not empty
-  std::uint32_t components;  // @56 1..4 float32 a vertex
-  std::uint32_t reserved;    // @60 zero
-};
-static_assert(sizeof(ColumnEntry) == 64);
+using tet4d::ColumnEntry;
 
 struct PageHeader {
   std::uint64_t first_vertex;  // @0  global number of the page's first own vertex
@@ -131,10 +127,7 @@ class File {
 // Streams a hypermesh page by page, in time order. Vertices and counts of the header are filled in at close.
 class Writer {
  public:
-  struct Column {
-    std::string name;
-    std::uint32_t components;
-  };
+  using Column = tet4d::Column;
   // header: flags, index_to_world, domain, isovalue; the rest is filled in. times: one per frame.
   static Result<Writer> create(const std::string& path, const MeshHeader& header, std::span<const double> times,
                                std::span<const Column> columns, paged::Codec codec, bool force);

@@ -124,7 +124,8 @@ int main(int argc, char** argv) {
       .example("tet4d-info --json drop.t4h", "the same for scripts")
       .example("tet4d-info --validate drop.t4h && echo sound",
                "checksums, indices, every inner triangle in two tetrahedra")
-      .positional("FILE", "a grid4 (.t4g), hypermesh (.t4h) or dynamic triangles (.t4d) file", &options.file)
+      .positional("FILE", "a grid4 (.t4g), hypermesh (.t4h), dynamic triangles (.t4d) or surface sequence (.t4q) file",
+                  &options.file)
       .flag("--json", "print JSON", &options.json)
       .flag("--validate",
             "prove structure, checksums, indices and, of a hypermesh, faces and orientation; exit 5 on faults",

@@ -10,6 +10,7 @@
 #include "formats/dynamic_triangles.h"
 #include "formats/grid4.h"
 #include "formats/hypermesh.h"
+#include "formats/surface_sequence.h"
 
 namespace {
 
@@ -76,6 +77,18 @@ void writeTriangles(const std::string& path) {
   must(writer.close(kProvenance));
 }
 
+// A triangle whose tip rises from 1 to 3 in two seconds, 10 km from the origin.
+void writeSurface(const std::string& path) {
+  surface_sequence::Header header{};
+  header.vertices = 3;
+  header.index_to_world = {{10000, 0, 0}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+  const std::vector<double> times{0, 2};
+  const std::vector<surface_sequence::Triangle> triangles{{0, 1, 2}};
+  auto writer = must(surface_sequence::Writer::create(path, header, times, triangles, {}, paged::Codec::kRaw, true));
+  for (const float top : {1.0F, 3.0F}) must(writer.addFrame(std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, top, 0}}));
+  must(writer.close(kProvenance));
+}
+
 std::vector<char> bytesOf(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -104,6 +117,7 @@ int main(int argc, char** argv) {
 
   writeGrid(in("grid.t4g"));
   writeTriangles(in("triangles.t4d"));
+  writeSurface(in("surface.t4q"));
   // Faces opposite 3 and 4 are the same triangle, wound oppositely: sound.
   writeMesh(in("mesh.t4h"), {{0, 1, 2, 3}, {1, 0, 2, 4}}, 0);
   writeMesh(in("misoriented.t4h"), {{0, 1, 2, 3}, {0, 1, 2, 4}}, 0);

@@ -136,5 +136,18 @@ TEST(PagePrefix, OfDynamicTrianglesIsRefused) {
                     [&](std::span<const std::byte> bytes) { return dyntri::validatePage(bytes, entry, path, 0); });
 }
 
+TEST(PagePrefix, OfASurfaceSequenceIsRefused) {
+  Scratch scratch;
+  const std::string path = scratch.path("a.t4q");
+  ASSERT_TRUE(sampleNamed("surface.t4q").write(path).ok());
+  auto file = surface_sequence::File::open(path);
+  ASSERT_TRUE(file.ok());
+  const auto& entry = file.value().frameEntry(1);
+  auto page = file.value().pages().load(1);
+  checkPagePrefixes(page.value().bytes(), [&](std::span<const std::byte> bytes) {
+    return surface_sequence::validatePage(bytes, entry, file.value().header(), path, 1);
+  });
+}
+
 }  // namespace
 }  // namespace tet4d::test

@@ -14,7 +14,8 @@ import sys
 
 SKIPPED = 77
 READERS = {".t4g": ("read_grid4", "Grid4"), ".t4h": ("read_hypermesh", "Hypermesh"),
-           ".t4d": ("read_dynamic_triangles", "DynamicTriangles")}
+           ".t4d": ("read_dynamic_triangles", "DynamicTriangles"),
+           ".t4q": ("read_surface_sequence", "SurfaceSequence")}
 
 
 class Comparison:
@@ -125,7 +126,7 @@ def main():
     for path in bad:
         comparison.bad(path)
     comparison.golden(options.golden)
-    for name in ("grid_u8.t4g", "mesh_columns.t4h", "triangles.t4d"):
+    for name in ("grid_u8.t4g", "mesh_columns.t4h", "triangles.t4d", "surface_columns.t4q"):
         comparison.programs(options.readers, options.work / "good" / name)
     print("\n".join(comparison.faults))
     print(f"{len(good)} good files, {len(bad)} forged ones, {comparison.checked} checks, {len(comparison.faults)} faults")

@@ -63,6 +63,15 @@ ordered_json provenanceJson(const container::Reader& reader) {
   return parsed.is_discarded() ? ordered_json(std::string(text)) : parsed;
 }
 
+ordered_json columnsJson(std::span<const ColumnEntry> columns) {
+  ordered_json out = ordered_json::array();
+  for (const ColumnEntry& column : columns) {
+    const std::string_view name(column.name, sizeof(column.name));
+    out.push_back({{"name", name.substr(0, name.find('\0'))}, {"components", column.components}});
+  }
+  return out;
+}
+
 void addPayload(ordered_json& out, const grid4::File& file) {
   const grid4::GridHeader& header = file.header();
   const std::uint64_t voxels = header.dims[0] * header.dims[1] * header.dims[2];
@@ -84,11 +93,7 @@ void addPayload(ordered_json& out, const hypermesh::File& file) {
   out["isovalue"] = std::isnan(header.isovalue) ? ordered_json(nullptr) : ordered_json(header.isovalue);
   out["on_grid"] = (header.flags & hypermesh::kOnGrid) != 0;
   out["inner_boundary"] = (header.flags & hypermesh::kInnerBoundary) != 0;
-  out["columns"] = ordered_json::array();
-  for (const hypermesh::ColumnEntry& column : file.columns()) {
-    const std::string_view name(column.name, sizeof(column.name));
-    out["columns"].push_back({{"name", name.substr(0, name.find('\0'))}, {"components", column.components}});
-  }
+  out["columns"] = columnsJson(file.columns());
   out["index_to_world"] = mapJson(header.index_to_world);
 }
 
@@ -97,6 +102,14 @@ void addPayload(ordered_json& out, const dyntri::File& file) {
   out["counts"] = {{"vertices", header.vertices}, {"edges", header.edges}, {"triangles", header.triangles},
                    {"tets", header.tets},         {"empty", header.empty}, {"frames", header.frames}};
   out["bounds"] = worldBounds(header.bounds, header.index_to_world, file.times());
+  out["index_to_world"] = mapJson(header.index_to_world);
+}
+
+void addPayload(ordered_json& out, const surface_sequence::File& file) {
+  const surface_sequence::Header& header = file.header();
+  out["counts"] = {{"frames", header.frames}, {"vertices", header.vertices}, {"triangles", header.triangles}};
+  out["bounds"] = worldBounds(header.bounds, header.index_to_world, file.times());
+  out["columns"] = columnsJson(file.columns());
   out["index_to_world"] = mapJson(header.index_to_world);
 }
 
@@ -117,16 +130,19 @@ Result<AnyFile> open(const std::string& path) {
       return opened(hypermesh::File::open(path));
     case dyntri::kPayload:
       return opened(dyntri::File::open(path));
+    case surface_sequence::kPayload:
+      return opened(surface_sequence::File::open(path));
     default:
-      return Fault{FaultCode::kBadInput, path, "header",
-                   fmt::format("payload '{}' is unknown; known are grid4, hypermesh and dynamic_triangles",
-                               container::fourCcText(header.value().payload)),
-                   "use a version of tet4d that knows it"};
+      return Fault{
+          FaultCode::kBadInput, path, "header",
+          fmt::format("payload '{}' is unknown; known are grid4, hypermesh, dynamic_triangles and surface_sequence",
+                      container::fourCcText(header.value().payload)),
+          "use a version of tet4d that knows it"};
   }
 }
 
 const char* payloadName(const AnyFile& file) {
-  static constexpr std::array kNames{"grid4", "hypermesh", "dynamic_triangles"};
+  static constexpr std::array kNames{"grid4", "hypermesh", "dynamic_triangles", "surface_sequence"};
   static_assert(kNames.size() == std::variant_size_v<AnyFile>);
   return kNames[file.index()];
 }

@@ -4,6 +4,7 @@
 #include "formats/dynamic_triangles.h"
 #include "formats/grid4.h"
 #include "formats/hypermesh.h"
+#include "formats/surface_sequence.h"
 #include "tests/formats/support/bad_files.h"
 
 namespace tet4d::test {
@@ -266,11 +267,66 @@ std::vector<BadFile> badFrames() {
   };
 }
 
+std::vector<BadFile> badSurfaces() {
+  namespace sq = surface_sequence;
+  using H = sq::Header;
+  std::vector<BadFile> all;
+  const auto header = [&](std::string name, std::string what, auto forge, std::string place = "section QHDR") {
+    all.push_back({"surface_" + name + ".t4q", "surface.t4q", true, std::move(place), std::move(what),
+                   [=](Image& i) { forge(i.item<H>(sq::kHeader)); }});
+  };
+  header("vertices_0", "vertices", [](H& h) { h.vertices = 0; });
+  header("vertices_huge", "vertices", [](H& h) { h.vertices = (std::uint64_t{1} << 32) + 1; });
+  // 7 vertices take 84 bytes; so do 7 + 2^62 / 3 if the product may wrap.
+  header(
+      "vertices_other", "frame 0", [](H& h) { h.vertices = std::uint64_t{1} << 32; }, "section PTAB");
+  header("reserved0", "reserved", [](H& h) { h.reserved0 = 1; });
+  header("reserved1", "reserved", [](H& h) { h.reserved1[3] = 1; });
+  header("map_nan", "map", [](H& h) { h.index_to_world.axes[1][1] = kNan64; });
+  header("bounds_nan", "bounds", [](H& h) { h.bounds.max.z = kNan; });
+  header(
+      "columns", "columns", [](H& h) { h.columns = 1; }, "section COLS");
+  header(
+      "triangles", "triangles", [](H& h) { h.triangles = kHuge; }, "section TRIS");
+  header(
+      "frames", "times for", [](H& h) { h.frames = 4; }, "section TIME");
+  const auto add = [&](std::string name, bool at_open, std::string place, std::string what, auto forge) {
+    const std::string sample = name.starts_with("column") ? "surface_columns.t4q" : "surface.t4q";
+    all.push_back(
+        {"surface_" + name + ".t4q", sample, at_open, std::move(place), std::move(what), [=](Image& i) { forge(i); }});
+  };
+  add("bounds_box", false, "section QHDR", "box of the vertices",
+      [](Image& i) { i.item<H>(sq::kHeader).bounds.min.x -= 1; });
+  add("times_equal", true, "section TIME", "after",
+      [](Image& i) { i.item<double>(sq::kTimes, 2) = i.item<double>(sq::kTimes, 1); });
+  add("triangle_range", false, "section TRIS", "range",
+      [](Image& i) { i.item<sq::Triangle>(sq::kTriangles, 3)[2] = 7; });
+  add("triangle_twice", false, "section TRIS", "twice",
+      [](Image& i) { i.item<sq::Triangle>(sq::kTriangles, 1)[1] = i.item<sq::Triangle>(sq::kTriangles, 1)[0]; });
+  add("page_missing", true, "section PTAB", "one page a frame", [](Image& i) {
+    i.sectionOf(paged::kPageTable).item_count -= 1;
+    i.sectionOf(paged::kPageTable).bytes -= sizeof(paged::PageEntry);
+  });
+  add("page_frame", true, "section PTAB", "frame 1", [](Image& i) { i.page(1).counts[0] = 2; });
+  add("page_vertices", true, "section PTAB", "frame 2", [](Image& i) { i.page(2).counts[1] = 8; });
+  add("page_third", true, "section PTAB", "frame 0", [](Image& i) { i.page(0).counts[2] = 1; });
+  add("page_time", true, "section PTAB", "frame 1", [](Image& i) { i.page(1).bounds.max.t = 2; });
+  add("page_kind", true, "section PTAB", "frame 0", [](Image& i) { i.page(0).kind = 1; });
+  add("page_outside", false, "page 1", "outside", [](Image& i) { i.inPage<float>(1, 0) = -1; });
+  add("page_nan", false, "page 0", "finite", [](Image& i) { i.inPage<float>(0, 12) = kNan; });
+  add("column_same_name", true, "section COLS", "same name",
+      [](Image& i) { i.item<ColumnEntry>(sq::kColumns, 1) = i.item<ColumnEntry>(sq::kColumns); });
+  add("column_kind", true, "section PTAB", "column 1 of frame 0", [](Image& i) { i.page(2).kind = 1; });
+  add("column_size", true, "section PTAB", "column 0 of frame 0",
+      [](Image& i) { i.page(1).bytes = i.page(1).raw_bytes -= 4; });
+  return all;
+}
+
 }  // namespace
 
 std::vector<BadFile> badContents() {
   std::vector<BadFile> all = badGrids();
-  for (auto part : {badMeshHeaders(), badMeshPages(), badTriangles(), badFrames()})
+  for (auto part : {badMeshHeaders(), badMeshPages(), badTriangles(), badSurfaces(), badFrames()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }

@@ -10,6 +10,7 @@
 #include "formats/dynamic_triangles.h"
 #include "formats/grid4.h"
 #include "formats/hypermesh.h"
+#include "formats/surface_sequence.h"
 
 namespace tet4d::test {
 namespace {
@@ -175,6 +176,37 @@ Result<std::string> dump(const dyntri::File& file) {
   return lines.take();
 }
 
+Result<std::string> dump(const surface_sequence::File& file) {
+  Lines lines;
+  const auto& h = file.header();
+  lines.word("surface_sequence vertices").number(h.vertices).word("triangles").number(h.triangles);
+  lines.word("frames").number(h.frames).word("columns").number(h.columns).end().map(h.index_to_world);
+  lines.word("bounds").vec(h.bounds.min).vec(h.bounds.max).end().word("times").numbers(file.times()).end();
+  for (const auto& c : file.columns()) lines.word("column").number(c.components).word(c.name).end();
+  auto triangles = file.triangles();
+  if (!triangles.ok()) return triangles.fault();
+  for (const auto& triangle : triangles.value()) lines.word("tri").numbers(triangle).end();
+  const std::size_t stride = 1 + file.columns().size();
+  for (std::size_t k = 0; k < h.frames; ++k) {
+    auto frame = file.loadFrame(k);
+    if (!frame.ok()) return frame.fault();
+    lines.page(k * stride, file.frameEntry(k));
+    for (const Vec3f& p : frame.value().positions) lines.word("v").number(p.x).number(p.y).number(p.z).end();
+    for (std::size_t c = 0; c < file.columns().size(); ++c) {
+      auto page = file.loadColumn(c, k);
+      if (!page.ok()) return page.fault();
+      lines.page(k * stride + 1 + c, file.pages().entries()[k * stride + 1 + c]);
+      const std::size_t bytes = file.columns()[c].components * sizeof(float);
+      for (std::size_t v = 0; v < h.vertices; ++v) {
+        lines.word("c");
+        putSamples<float>(lines, page.value().bytes().subspan(v * bytes, bytes));
+        lines.end();
+      }
+    }
+  }
+  return lines.take();
+}
+
 template <class File>
 Result<std::string> dumpAs(const std::string& path) {
   auto file = File::open(path);
@@ -194,6 +226,7 @@ std::string hex(std::uint64_t value) {
 Result<std::string> dumpOf(const std::string& path, std::uint32_t payload) {
   if (payload == grid4::kPayload) return dumpAs<grid4::File>(path);
   if (payload == hypermesh::kPayload) return dumpAs<hypermesh::File>(path);
+  if (payload == surface_sequence::kPayload) return dumpAs<surface_sequence::File>(path);
   return dumpAs<dyntri::File>(path);
 }
 

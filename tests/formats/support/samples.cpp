@@ -195,6 +195,37 @@ Status writeTriangles(const std::string& path, const Sheet& sheet, paged::Codec 
   return writer.value().close(kProvenanceText);
 }
 
+// A strip of triangles that ripples, its last vertex in none of them, far from the origin.
+Status writeSurfaces(const std::string& path, std::size_t triangles, std::size_t frames, paged::Codec codec,
+                     bool columns) {
+  surface_sequence::Header header{};
+  header.vertices = triangles + 3;
+  header.index_to_world = {{1e7, -2e7, 0.125}, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
+  std::vector<double> times;
+  for (std::size_t k = 0; k < frames; ++k) times.push_back(1.7e9 + 0.1 * static_cast<double>(k));
+  std::vector<surface_sequence::Triangle> strip;
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    strip.push_back(i % 2 == 0 ? surface_sequence::Triangle{i, i + 1, i + 2}
+                               : surface_sequence::Triangle{i + 1, i, i + 2});
+  }
+  std::vector<Column> declared;
+  if (columns) declared = {{"heat", 1}, {"wind \xc3\xbc", 2}};
+  auto writer = surface_sequence::Writer::create(path, header, times, strip, declared, codec, true);
+  if (!writer.ok()) return writer.fault();
+  for (std::size_t k = 0; k < frames; ++k) {
+    std::vector<Vec3f> positions;
+    std::vector<float> heat, wind;
+    for (std::size_t i = 0; i < header.vertices; ++i) {
+      positions.push_back({static_cast<float>(i / 2), static_cast<float>(i % 2), rippled(i, 0, k)});
+      heat.push_back(static_cast<float>(i + k));
+      wind.insert(wind.end(), {-heat.back(), std::numeric_limits<float>::quiet_NaN()});
+    }
+    const std::array<std::span<const float>, 2> values{heat, wind};
+    if (Status s = writer.value().addFrame(positions, std::span(values).first(declared.size())); !s.ok()) return s;
+  }
+  return writer.value().close(kProvenanceText);
+}
+
 // A sheet without pages, and one of a single tetrahedron with four times all different.
 Sheet withoutPages() {
   Sheet sheet = makeSheet(1, 1);
@@ -251,6 +282,15 @@ std::vector<Sample> allSamples() {
        [=](auto& p) { return writeTriangles(p, withoutPages(), raw, false); }},
       {"triangles_gaps_zstd.t4d", dyntri::kPayload, false,
        [=](auto& p) { return writeTriangles(p, makeSheet(2, 1), zstd, true); }},
+      {"surface.t4q", surface_sequence::kPayload, true, [=](auto& p) { return writeSurfaces(p, 4, 3, raw, false); }},
+      {"surface_one.t4q", surface_sequence::kPayload, true,
+       [=](auto& p) { return writeSurfaces(p, 1, 1, raw, false); }},
+      {"surface_points.t4q", surface_sequence::kPayload, true,
+       [=](auto& p) { return writeSurfaces(p, 0, 2, raw, false); }},
+      {"surface_columns.t4q", surface_sequence::kPayload, true,
+       [=](auto& p) { return writeSurfaces(p, 2, 1, raw, true); }},
+      {"surface_columns_zstd.t4q", surface_sequence::kPayload, false,
+       [=](auto& p) { return writeSurfaces(p, 30, 1, zstd, true); }},
   };
   if (!paged::hasCodec(zstd)) std::erase_if(all, [](const Sample& s) { return !s.exact; });
   return all;
@@ -281,6 +321,7 @@ const Sample& sampleNamed(const std::string& name) {
 Status openAndVerify(const std::string& path, std::uint32_t payload, bool* opened) {
   if (payload == grid4::kPayload) return openAndVerifyAs<grid4::File>(path, opened);
   if (payload == hypermesh::kPayload) return openAndVerifyAs<hypermesh::File>(path, opened);
+  if (payload == surface_sequence::kPayload) return openAndVerifyAs<surface_sequence::File>(path, opened);
   return openAndVerifyAs<dyntri::File>(path, opened);
 }
 
