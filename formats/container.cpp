@@ -143,6 +143,11 @@ Result<std::uint64_t> Writer::appendPage(std::span<const std::byte> bytes) {
   return offset;
 }
 
+Status Writer::continuePage(std::span<const std::byte> bytes) {
+  assert(state_->in_pages);
+  return state_->put(bytes);
+}
+
 Status Writer::endPages() {
   assert(state_->in_pages);
   state_->in_pages = false;

@@ -74,6 +74,22 @@ inline constexpr std::uint32_t kProvenance = fourCc("PROV");  // UTF-8 JSON: pro
 // XXH3-64 of a range.
 std::uint64_t xxh3(std::span<const std::byte> bytes);
 
+// XXH3-64 of bytes that come in pieces: the same digest as of all of them at once.
+class Xxh3Stream {
+ public:
+  Xxh3Stream();
+  ~Xxh3Stream();
+  Xxh3Stream(const Xxh3Stream&) = delete;
+  Xxh3Stream& operator=(const Xxh3Stream&) = delete;
+  void add(std::span<const std::byte> bytes);
+  std::uint64_t digest() const;  // of what was added so far
+  void reset();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 // A file mapped read-only. Moves; spans stay valid as long as the Reader lives. No exceptions, O(sections) to open.
 class Reader {
  public:
@@ -152,6 +168,8 @@ class Writer {
   Status beginPages(std::uint32_t kind, std::uint32_t flags);
   // Appends one page; returns its offset in the file.
   Result<std::uint64_t> appendPage(std::span<const std::byte> bytes);
+  // Appends to the page in hand.
+  Status continuePage(std::span<const std::byte> bytes);
   Status endPages();
 
   // Writes the table and the header, and renames to the final name. Without it the destructor removes the temporary

@@ -141,6 +141,16 @@ std::string fourCcText(std::uint32_t code) {
 
 std::uint64_t xxh3(std::span<const std::byte> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
+struct Xxh3Stream::State {
+  XXH3_state_t xxh{};
+};
+
+Xxh3Stream::Xxh3Stream() : state_(std::make_unique<State>()) { reset(); }
+Xxh3Stream::~Xxh3Stream() = default;
+void Xxh3Stream::add(std::span<const std::byte> bytes) { XXH3_64bits_update(&state_->xxh, bytes.data(), bytes.size()); }
+std::uint64_t Xxh3Stream::digest() const { return XXH3_64bits_digest(&state_->xxh); }
+void Xxh3Stream::reset() { XXH3_64bits_reset(&state_->xxh); }
+
 void Reader::Unmap::operator()(const std::byte* data) const { munmap(const_cast<std::byte*>(data), size); }
 
 Result<Reader> Reader::open(const std::string& path, std::uint32_t payload, std::uint16_t max_payload_version,

@@ -7,7 +7,7 @@
 namespace tet4d::hypermesh {
 namespace {
 
-constexpr std::array kKnown{kHeader, kTimes, kColumns, paged::kPages, paged::kPageTable};
+constexpr std::array kKnown{kHeader, kTimes, kColumns, kParts, paged::kPages, paged::kPageTable};
 
 bool anySet(std::span<const std::uint64_t> reserved) {
   return std::any_of(reserved.begin(), reserved.end(), [](auto r) { return r != 0; });
@@ -27,6 +27,15 @@ const char* checkHeader(const MeshHeader& h) {
 // A page is never empty, so that of a column without vertices is one part of zeros.
 std::uint64_t columnBytes(std::uint64_t bytes) {
   return std::max<std::uint64_t>(page_layout::padded(bytes), page_layout::kPartAlignment);
+}
+
+// What is wrong with the parts, or null.
+const char* checkParts(std::span<const PartEntry> parts) {
+  for (const PartEntry& part : parts) {
+    if (anySet(part.reserved)) return "reserved bytes are not zero";
+    if (std::isinf(part.isovalue)) return "a part's isovalue is infinite";
+  }
+  return nullptr;
 }
 
 // Every geometry page, in the order of its vertices, then its column pages.
@@ -110,6 +119,7 @@ Result<PageView> validatePage(std::span<const std::byte> bytes, const paged::Pag
       h.foreign != entry.counts[3]) {
     return bad("counts differ from the page table's");
   }
+  if (h.part != 0 && h.part >= mesh.parts) return bad("belongs to a part that is not there");
   view.vertices = parser.take<Vec4f>(h.owned);
   view.runs = parser.take<Run>(h.runs);
   view.tets = parser.take<Tet>(h.tets);
@@ -147,6 +157,12 @@ Result<File> File::open(const std::string& path) {
     file.columns_ = columns.value();
     if (Status s = reader.verifySection(*reader.find(kColumns)); !s.ok()) return s.fault();
   }
+  if (reader.find(kParts) != nullptr) {
+    auto parts = reader.items<PartEntry>(kParts);
+    if (!parts.ok()) return parts.fault();
+    file.parts_ = parts.value();
+    if (Status s = reader.verifySection(*reader.find(kParts)); !s.ok()) return s.fault();
+  }
   for (const std::uint32_t kind : {kHeader, kTimes}) {
     if (Status status = reader.verifySection(*reader.find(kind)); !status.ok()) return status.fault();
   }
@@ -157,6 +173,14 @@ Result<File> File::open(const std::string& path) {
                                       std::to_string(file.header_->columns));
   }
   if (const char* what = checkColumns(file.columns_)) return reader.fault(kColumns, what);
+  if (file.parts_.size() != file.header_->parts) {
+    return reader.fault(kParts, "has " + std::to_string(file.parts_.size()) + " parts, the header says " +
+                                    std::to_string(file.header_->parts));
+  }
+  if (const char* what = checkParts(file.parts_)) return reader.fault(kParts, what);
+  if (file.header_->parts != 0 && reader.header().payload_version < 2) {
+    return reader.fault(kParts, "has parts, which version 1 does not know");
+  }
   auto pages = paged::Pages::open(reader);
   if (!pages.ok()) return pages.fault();
   file.pages_ = pages.value();
@@ -213,10 +237,11 @@ Result<GatheredPage> File::gather(std::size_t k) const {
 Result<std::uint64_t> File::contentDigest() const {
   auto pages = pages_.contentDigest();
   if (!pages.ok()) return pages.fault();
-  const std::array<std::uint64_t, 4> parts{container::xxh3(std::as_bytes(std::span(header_, 1))),
-                                           container::xxh3(std::as_bytes(times_)),
-                                           container::xxh3(std::as_bytes(columns_)), pages.value()};
-  return container::xxh3(std::as_bytes(std::span(parts)));
+  std::vector<std::uint64_t> digests{container::xxh3(std::as_bytes(std::span(header_, 1))),
+                                     container::xxh3(std::as_bytes(times_)), container::xxh3(std::as_bytes(columns_)),
+                                     pages.value()};
+  if (!parts_.empty()) digests.push_back(container::xxh3(std::as_bytes(parts_)));
+  return container::xxh3(std::as_bytes(std::span(digests)));
 }
 
 Result<paged::PageBytes> File::loadColumn(std::size_t c, std::size_t k) const {
@@ -261,14 +286,18 @@ Status File::verify() const {
 }
 
 Result<Writer> Writer::create(const std::string& path, const MeshHeader& header, std::span<const double> times,
-                              std::span<const Column> columns, paged::Codec codec, bool force) {
+                              std::span<const Column> columns, paged::Codec codec, bool force,
+                              std::span<const double> part_isovalues) {
   MeshHeader checked = header;
   checked.bounds = page_layout::stored({});
   if (const char* what = checkHeader(checked)) return Fault{FaultCode::kUsage, path, "section HHDR", what, ""};
   if (Status s = page_layout::checkTimes(times, times.size(), path); !s.ok()) return s.fault();
   std::vector<ColumnEntry> entries = columnEntries(columns);
   if (const char* what = checkColumns(entries)) return Fault{FaultCode::kUsage, path, "section COLS", what, ""};
-  auto file = container::Writer::create(path, kPayload, kVersion, force);
+  std::vector<PartEntry> parts;
+  for (const double isovalue : part_isovalues) parts.push_back({isovalue, {}});
+  if (const char* what = checkParts(parts)) return Fault{FaultCode::kUsage, path, "section PART", what, ""};
+  auto file = container::Writer::create(path, kPayload, parts.empty() ? 1 : 2, force);
   if (!file.ok()) return file.fault();
   Writer writer;
   writer.file_ = std::make_unique<container::Writer>(std::move(file).value());
@@ -276,18 +305,31 @@ Result<Writer> Writer::create(const std::string& path, const MeshHeader& header,
   writer.header_ = header;
   writer.header_.frames = times.size();
   writer.header_.columns = static_cast<std::uint32_t>(columns.size());
+  writer.header_.parts = parts.size();
+  writer.parts_ = std::move(parts);
   writer.times_.assign(times.begin(), times.end());
   writer.columns_ = std::move(entries);
   if (Status status = writer.pages_->begin(); !status.ok()) return status.fault();
   return writer;
 }
 
+Status Writer::setTimes(std::span<const double> times, float last_t) {
+  if (Status s = page_layout::checkTimes(times, times.size(), file_->path()); !s.ok()) return s;
+  times_.assign(times.begin(), times.end());
+  header_.frames = times.size();
+  header_.domain.max.t = last_t;
+  return {};
+}
+
 Status Writer::addPage(std::span<const Vec4f> vertices, std::span<const Run> runs, std::span<const Tet> tets,
-                       const Bounds4f& bounds, std::span<const std::span<const float>> columns) {
+                       const Bounds4f& bounds, std::span<const std::span<const float>> columns, std::uint64_t part) {
+  const auto bad = [&](const char* what) {
+    return Fault{FaultCode::kUsage, file_->path(), "page " + std::to_string(pages_->entries().size()), what, ""};
+  };
+  if (part >= std::max<std::size_t>(1, parts_.size())) return bad("belongs to a part that is not there");
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     if (columns.size() != columns_.size() || columns[c].size() != vertices.size() * columns_[c].components) {
-      return Fault{FaultCode::kUsage, file_->path(), "page " + std::to_string(pages_->entries().size()),
-                   "the columns do not fit the vertices", ""};
+      return bad("the columns do not fit the vertices");
     }
   }
   PageHeader head{};
@@ -296,13 +338,7 @@ Status Writer::addPage(std::span<const Vec4f> vertices, std::span<const Run> run
   head.tets = tets.size();
   head.runs = runs.size();
   for (const Run& run : runs) head.foreign += run.count;
-  using page_layout::padded;
-  page_layout::Builder builder(padded(sizeof head) + padded(vertices.size_bytes()) + padded(runs.size_bytes()) +
-                               padded(tets.size_bytes()));
-  builder.add<PageHeader>({&head, 1});
-  builder.add(vertices);
-  builder.add(runs);
-  builder.add(tets);
+  head.part = part;
   paged::PageEntry entry{};
   entry.bounds = bounds;
   entry.counts[0] = head.first_vertex;
@@ -313,13 +349,14 @@ Status Writer::addPage(std::span<const Vec4f> vertices, std::span<const Run> run
   for (const Vec4f& v : vertices) bounds_.add(v);
   next_vertex_ += head.owned;
   tets_ += head.tets;
-  if (Status status = pages_->add(builder.bytes(), entry); !status.ok()) return status;
+  const std::array parts{std::as_bytes(std::span(&head, 1)), std::as_bytes(vertices), std::as_bytes(runs),
+                         std::as_bytes(tets)};
+  if (Status status = pages_->addParts(parts, entry); !status.ok()) return status;
+  static constexpr std::array<std::byte, page_layout::kPartAlignment> kNothing{};
   for (std::size_t c = 0; c < columns_.size(); ++c) {
-    const auto values = std::as_bytes(columns[c]);
-    std::vector<std::byte> bytes(columnBytes(values.size()));
-    std::copy(values.begin(), values.end(), bytes.begin());
+    const auto values = columns[c].empty() ? std::span<const std::byte>(kNothing) : std::as_bytes(columns[c]);
     entry.kind = static_cast<std::uint32_t>(1 + c);
-    if (Status status = pages_->add(bytes, entry); !status.ok()) return status;
+    if (Status status = pages_->addParts({&values, 1}, entry); !status.ok()) return status;
   }
   return {};
 }
@@ -333,6 +370,9 @@ Status Writer::close(const std::string& provenance_json) {
   if (Status s = file_->add<double>(kTimes, container::kSectionRequired, times_); !s.ok()) return s;
   if (!columns_.empty()) {
     if (Status s = file_->add<ColumnEntry>(kColumns, container::kSectionRequired, columns_); !s.ok()) return s;
+  }
+  if (!parts_.empty()) {
+    if (Status s = file_->add<PartEntry>(kParts, container::kSectionRequired, parts_); !s.ok()) return s;
   }
   if (Status s = file_->add<char>(container::kProvenance, 0, provenance_json); !s.ok()) return s;
   return file_->close();

@@ -28,10 +28,11 @@
 namespace tet4d::hypermesh {
 
 inline constexpr std::uint32_t kPayload = container::fourCc("HYPM");
-inline constexpr std::uint16_t kVersion = 1;
+inline constexpr std::uint16_t kVersion = 2;  // the newest that is read
 inline constexpr std::uint32_t kHeader = container::fourCc("HHDR");
 inline constexpr std::uint32_t kTimes = container::fourCc("TIME");
 inline constexpr std::uint32_t kColumns = container::fourCc("COLS");
+inline constexpr std::uint32_t kParts = container::fourCc("PART");
 
 // Flags of a hypermesh.
 inline constexpr std::uint32_t kOnGrid = 1u << 0;         // made from a grid: boundary only on the box's walls, unless:
@@ -46,13 +47,20 @@ struct MeshHeader {
   AffineMap index_to_world;   // @32
   Bounds4f domain;            // @128 the box whose walls may bound the mesh (index space, frames)
   Bounds4f bounds;            // @160 of the vertices; all zero if there are none
-  double isovalue;            // @192 NaN if there is none
-  std::uint64_t reserved[7];  // @200 zero
+  double isovalue;            // @192 NaN if there is none, or one for each part
+  std::uint64_t parts;        // @200 entries of PART; 0: the mesh is one part
+  std::uint64_t reserved[6];  // @208 zero
 };
 static_assert(sizeof(MeshHeader) == 256 && offsetof(MeshHeader, isovalue) == 192 &&
               offsetof(MeshHeader, domain) == 128);
 
 using tet4d::ColumnEntry;
+
+struct PartEntry {
+  double isovalue;            // @0  NaN if there is none
+  std::uint64_t reserved[3];  // @8  zero
+};
+static_assert(sizeof(PartEntry) == 32);
 
 struct PageHeader {
   std::uint64_t first_vertex;  // @0  global number of the page's first own vertex
@@ -60,7 +68,8 @@ struct PageHeader {
   std::uint64_t tets;          // @16
   std::uint64_t runs;          // @24
   std::uint64_t foreign;       // @32 sum of the runs' counts
-  std::uint64_t reserved[3];   // @40 zero
+  std::uint64_t part;          // @40 entry of PART it belongs to; 0 without parts
+  std::uint64_t reserved[2];   // @48 zero
 };
 static_assert(sizeof(PageHeader) == 64);
 
@@ -101,6 +110,7 @@ class File {
   const MeshHeader& header() const { return *header_; }
   std::span<const double> times() const { return times_; }
   std::span<const ColumnEntry> columns() const { return columns_; }
+  std::span<const PartEntry> parts() const { return parts_; }  // empty: the mesh is one part
   const paged::Pages& pages() const { return pages_; }
   // Geometry pages, in time order; they are every (1 + columns)-th page of the page table.
   std::size_t geometryPages() const { return pages_.size() / stride(); }
@@ -121,6 +131,7 @@ class File {
   const MeshHeader* header_ = nullptr;
   std::span<const double> times_;
   std::span<const ColumnEntry> columns_;
+  std::span<const PartEntry> parts_;
   paged::Pages pages_;
 };
 
@@ -128,14 +139,18 @@ class File {
 class Writer {
  public:
   using Column = tet4d::Column;
-  // header: flags, index_to_world, domain, isovalue; the rest is filled in. times: one per frame.
+  // header: flags, index_to_world, domain, isovalue; the rest is filled in. times: one per frame. part_isovalues: one a
+  // part, none for a mesh of one part.
   static Result<Writer> create(const std::string& path, const MeshHeader& header, std::span<const double> times,
-                               std::span<const Column> columns, paged::Codec codec, bool force);
-  // Adds a slab (an empty one is legal and keeps the rank).
-  // bounds: the box over all vertices its tetrahedra use, own or foreign; t is the slab's time interval.
-  // columns: one span per declared column, components * vertices.size() floats.
+                               std::span<const Column> columns, paged::Codec codec, bool force,
+                               std::span<const double> part_isovalues = {});
+  // Adds a slab of a part (an empty one is legal and keeps the rank). Raw pages are written from the spans, uncopied.
+  // bounds: a box that holds all vertices its tetrahedra use, own or foreign; its t does not begin before that of the
+  // page in front. columns: one span per declared column, components * vertices.size() floats.
   Status addPage(std::span<const Vec4f> vertices, std::span<const Run> runs, std::span<const Tet> tets,
-                 const Bounds4f& bounds, std::span<const std::span<const float>> columns = {});
+                 const Bounds4f& bounds, std::span<const std::span<const float>> columns = {}, std::uint64_t part = 0);
+  // What a stream tells only at its end: the times, replacing those of create(), and the domain's last time.
+  Status setTimes(std::span<const double> times, float last_t);
   // Sets flags of the header that only the data can tell, such as kInnerBoundary. Any time before close.
   void addFlags(std::uint32_t flags) { header_.flags |= flags; }
   std::uint64_t nextVertex() const { return next_vertex_; }
@@ -148,6 +163,7 @@ class Writer {
   MeshHeader header_{};
   std::vector<double> times_;
   std::vector<ColumnEntry> columns_;
+  std::vector<PartEntry> parts_;
   std::uint64_t next_vertex_ = 0, tets_ = 0;
   Bounds4f bounds_;
 };

@@ -1,9 +1,12 @@
 #include "formats/paged.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <new>
+
+#include "formats/page_layout.h"
 
 #ifdef TET4D_WITH_ZSTD
 #include <zstd.h>
@@ -11,6 +14,12 @@
 
 namespace tet4d::paged {
 namespace {
+
+// An entry as files hold it.
+PageEntry withStoredBounds(PageEntry entry) {
+  entry.bounds = page_layout::stored(entry.bounds);
+  return entry;
+}
 
 Fault badPage(const std::string& path, std::size_t i, std::string what) {
   return {FaultCode::kBadInput, path, "page " + std::to_string(i), std::move(what), "write the file again"};
@@ -165,14 +174,18 @@ Status Pages::verifyPadding() const {
 
 Status PageWriter::begin() { return writer_->beginPages(kPages, container::kSectionRequired); }
 
+Status PageWriter::checkSize(std::uint64_t raw_bytes) const {
+  assert(raw_bytes != 0);
+  if (raw_bytes <= kMaxPageBytes) return {};
+  return Fault{FaultCode::kBadInput, writer_->path(), "page " + std::to_string(entries_.size()),
+               std::to_string(raw_bytes) + " bytes, a page may have " + std::to_string(kMaxPageBytes),
+               "cut the data into more pages"};
+}
+
 Status PageWriter::add(std::span<const std::byte> raw, PageEntry entry) {
-  assert(!raw.empty());
-  if (raw.size() > kMaxPageBytes) {
-    return Fault{FaultCode::kBadInput, writer_->path(), "page " + std::to_string(entries_.size()),
-                 std::to_string(raw.size()) + " bytes, a page may have " + std::to_string(kMaxPageBytes),
-                 "cut the data into more pages"};
-  }
+  if (Status status = checkSize(raw.size()); !status.ok()) return status;
   std::span<const std::byte> stored = raw;
+  entry = withStoredBounds(entry);
   entry.codec = static_cast<std::uint32_t>(codec_);
   if (codec_ == Codec::kZstd) {
 #ifdef TET4D_WITH_ZSTD
@@ -188,13 +201,46 @@ Status PageWriter::add(std::span<const std::byte> raw, PageEntry entry) {
                  "rebuild with TET4D_WITH_ZSTD=ON, or use --page-codec raw"};
 #endif
   }
-  if (entry.bounds.empty()) entry.bounds = {{0, 0, 0, 0}, {0, 0, 0, 0}};
   entry.bytes = stored.size();
   entry.raw_bytes = raw.size();
   entry.xxh3 = container::xxh3(stored);
   auto offset = writer_->appendPage(stored);
   if (!offset.ok()) return offset.fault();
   entry.offset = offset.value();
+  entries_.push_back(entry);
+  return {};
+}
+
+Status PageWriter::addParts(std::span<const std::span<const std::byte>> parts, PageEntry entry) {
+  std::uint64_t bytes = 0;
+  for (const auto& part : parts) bytes += page_layout::padded(part.size());
+  if (Status status = checkSize(bytes); !status.ok()) return status;
+  if (codec_ == Codec::kRaw) return addRawParts(parts, entry);
+  page_layout::Builder builder(bytes);
+  for (const auto& part : parts) builder.add(part);
+  return add(builder.bytes(), entry);
+}
+
+Status PageWriter::addRawParts(std::span<const std::span<const std::byte>> parts, PageEntry entry) {
+  static constexpr std::array<std::byte, page_layout::kPartAlignment> kZeros{};
+  auto offset = writer_->appendPage({});
+  if (!offset.ok()) return offset.fault();
+  entry = withStoredBounds(entry);
+  entry.codec = static_cast<std::uint32_t>(Codec::kRaw);
+  entry.offset = offset.value();
+  container::Xxh3Stream digest;
+  const auto put = [&](std::span<const std::byte> bytes) {
+    digest.add(bytes);
+    entry.bytes += bytes.size();
+    return writer_->continuePage(bytes);
+  };
+  for (const auto& part : parts) {
+    if (Status status = put(part); !status.ok()) return status;
+    const std::uint64_t gap = page_layout::padded(part.size()) - part.size();
+    if (Status status = put(std::span(kZeros).first(gap)); !status.ok()) return status;
+  }
+  entry.raw_bytes = entry.bytes;
+  entry.xxh3 = digest.digest();
   entries_.push_back(entry);
   return {};
 }

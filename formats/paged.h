@@ -83,10 +83,16 @@ class PageWriter {
   Status begin();
   // Encodes and appends one page. `entry` gives kind, bounds, errors and counts; the rest is filled in.
   Status add(std::span<const std::byte> raw, PageEntry entry);
+  // The same from the page's parts, each padded with zeros to page_layout::kPartAlignment. Raw pages are written from
+  // where the parts stand, without a copy.
+  Status addParts(std::span<const std::span<const std::byte>> parts, PageEntry entry);
   Status end();
   std::span<const PageEntry> entries() const { return entries_; }
 
  private:
+  Status checkSize(std::uint64_t raw_bytes) const;
+  Status addRawParts(std::span<const std::span<const std::byte>> parts, PageEntry entry);
+
   container::Writer* writer_;
   Codec codec_;
   std::vector<PageEntry> entries_;
