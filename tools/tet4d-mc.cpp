@@ -86,7 +86,7 @@ std::vector<double> timesOf(const std::string& argument, cli::Session& session) 
   return parseTimes(text, argument);
 }
 
-void printPlan(const exchange::FrameSource& source, const hypermesh::Options& options) {
+void printPlan(exchange::FrameSource& source, const hypermesh::Options& options) {
   const hypermesh::Plan plan = hypermesh::plan(source, options);
   const auto line = [](const char* name, std::uint64_t value) {
     std::printf("%s %llu\n", name, static_cast<unsigned long long>(value));

@@ -1,5 +1,6 @@
 #include "libpreprocess/hypermesh/bit_planes.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -62,64 +63,118 @@ BitPlane edgesOfCells(const GridShape& shape, const BitPlane& usable, unsigned a
   return edges;
 }
 
-// The cut edges of one z layer; returns how many.
-std::uint64_t cutLayer(const GridShape& shape, const BitPlane& lower, const BitPlane& upper, std::uint64_t z,
-                       EdgePlane& plane) {
+// The cut edges of one row; returns how many. Rows that are alike and equal at both ends are not looked at.
+[[gnu::always_inline]] inline std::uint64_t cutRow(const GridShape& shape, const SignPlane& lower, const SignPlane& upper, std::uint64_t y,
+                     std::uint64_t z, EdgePlane& plane) {
   const unsigned dx = plane.axes & 1U, dy = plane.axes >> 1 & 1U, dz = plane.axes >> 2 & 1U;
-  const std::size_t row = shape.rowWords();
+  if (y + dy >= shape.dims[1] || z + dz >= shape.dims[2]) return 0;
+  const std::size_t from = shape.row(y, z), to = shape.row(y + dy, z + dz);
+  if (lower.rows[from] == upper.rows[to] && lower.rows[from] != RowState::kMixed) return 0;
+  const std::size_t words = shape.rowWords();
+  const std::uint64_t* a = &lower.inside[from * words];
+  const std::uint64_t* b = &upper.inside[to * words];
+  std::uint64_t* out = &plane.bits[from * words];
   std::uint64_t count = 0;
-  for (std::uint64_t y = 0; y < shape.dims[1]; ++y) {
-    std::uint64_t* out = &plane.bits[shape.rowStart(y, z)];
-    if (y + dy >= shape.dims[1] || z + dz >= shape.dims[2]) {
-      std::fill(out, out + row, 0);
-      continue;
-    }
-    const std::uint64_t* a = &lower[shape.rowStart(y, z)];
-    const std::uint64_t* b = &upper[shape.rowStart(y + dy, z + dz)];
-    for (std::size_t w = 0; w < row; ++w) {
-      const std::uint64_t next = w + 1 < row ? b[w + 1] : 0;
-      const std::uint64_t tip = dx ? b[w] >> 1 | next << 63 : b[w];
-      out[w] = (a[w] ^ tip) & GridShape::bitsBelow(shape.dims[0] - dx, w);
-      count += static_cast<std::uint64_t>(std::popcount(out[w]));
-    }
+  for (std::size_t w = 0; w < words; ++w) {
+    const std::uint64_t next = w + 1 < words ? b[w + 1] : 0;
+    const std::uint64_t tip = dx ? b[w] >> 1 | next << 63 : b[w];
+    out[w] = (a[w] ^ tip) & GridShape::bitsBelow(shape.dims[0] - dx, w);
+    count += static_cast<std::uint64_t>(__builtin_popcountll(out[w]));
   }
   return count;
 }
 
+// Keeps the edges of a row that belong to a usable cell; returns how many.
+std::uint64_t keepWanted(const GridShape& shape, std::size_t row, const BitPlane& wanted, EdgePlane& plane) {
+  std::uint64_t count = 0;
+  for (std::size_t w = row * shape.rowWords(); w < (row + 1) * shape.rowWords(); ++w)
+    count += static_cast<std::uint64_t>(std::popcount(plane.bits[w] &= wanted[w]));
+  return count;
+}
+
+struct CutTask {
+  const GridShape& shape;
+  const SignPlane& lower;
+  const SignPlane& upper;
+  const std::vector<BitPlane>& wanted;  // by plane, empty for all
+};
+
+// The cut edges of plane number p in one layer; returns how many.
+[[gnu::always_inline]] inline std::uint64_t cutLayer(const CutTask& task, std::size_t p, std::uint64_t z,
+                                                     EdgePlane& plane) {
+  std::uint64_t sum = 0;
+  for (std::uint64_t y = 0; y < task.shape.dims[1]; ++y) {
+    const std::size_t row = task.shape.row(y, z);
+    std::uint64_t count = cutRow(task.shape, task.lower, task.upper, y, z, plane);
+    if (count != 0 && !task.wanted.empty()) count = keepWanted(task.shape, row, task.wanted[p], plane);
+    plane.used[row] = count != 0;
+    sum += count;
+  }
+  return sum;
+}
+
+// Writes the numbers of a layer's vertices, from `number` on.
+[[gnu::always_inline]] inline void numberLayer(const GridShape& shape, std::uint64_t z, std::uint64_t number,
+                                               EdgePlane& plane) {
+  for (std::uint64_t y = 0; y < shape.dims[1]; ++y) {
+    if (plane.used[shape.row(y, z)] == 0) continue;
+    const std::size_t begin = shape.rowStart(y, z);
+    for (std::size_t w = begin; w < begin + shape.rowWords(); ++w) {
+      plane.prefix[w] = static_cast<std::uint32_t>(number);
+      number += static_cast<std::uint64_t>(__builtin_popcountll(plane.bits[w]));
+    }
+  }
+}
+
+std::uint64_t cutLayerPortable(const CutTask& task, std::size_t p, std::uint64_t z, EdgePlane& plane) {
+  return cutLayer(task, p, z, plane);
+}
+TET4D_WIDE std::uint64_t cutLayerWide(const CutTask& task, std::size_t p, std::uint64_t z, EdgePlane& plane) {
+  return cutLayer(task, p, z, plane);
+}
+void numberLayerPortable(const GridShape& shape, std::uint64_t z, std::uint64_t number, EdgePlane& plane) {
+  numberLayer(shape, z, number, plane);
+}
+TET4D_WIDE void numberLayerWide(const GridShape& shape, std::uint64_t z, std::uint64_t number, EdgePlane& plane) {
+  numberLayer(shape, z, number, plane);
+}
+
 }  // namespace
+
+SignPlane makeSignPlane(const GridShape& shape) {
+  return {BitPlane(shape.words()), std::vector<RowState>(shape.rows(), RowState::kOutside)};
+}
+
+std::uint64_t signPlaneBytes(const GridShape& shape) {
+  return shape.words() * sizeof(std::uint64_t) + shape.rows() * sizeof(RowState);
+}
 
 EdgeSet makeEdgeSet(const GridShape& shape, std::span<const EdgeDirection> directions, bool through_time) {
   EdgeSet set;
   for (const EdgeDirection& direction : directions) {
     if (((direction.axes & 8U) != 0) != through_time) continue;
-    set.planes.push_back({direction.axes, BitPlane(shape.words()), std::vector<std::uint32_t>(shape.words())});
+    set.planes.push_back({direction.axes, std::vector<std::uint8_t>(shape.rows()), BitPlane(shape.words()),
+                          std::vector<std::uint32_t>(shape.words())});
   }
   return set;
 }
 
 std::uint64_t edgeSetBytes(const GridShape& shape, std::size_t planes) {
-  return std::uint64_t{planes} * shape.words() * (sizeof(std::uint64_t) + sizeof(std::uint32_t));
+  return std::uint64_t{planes} * (shape.words() * (sizeof(std::uint64_t) + sizeof(std::uint32_t)) + shape.rows());
 }
 
-void numberCutEdges(const GridShape& shape, const BitPlane& lower, const BitPlane& upper, const BitPlane& usable,
-                    outofcore::Executor& executor, EdgeSet& set) {
+void numberCutEdges(const GridShape& shape, const SignPlane& lower, const SignPlane& upper, const BitPlane& usable,
+                    outofcore::Executor& executor, Simd simd, EdgeSet& set) {
   const std::uint64_t layers = shape.dims[2];
-  const std::size_t layer_words = shape.rowWords() * shape.dims[1];
   std::vector<BitPlane> wanted;
   if (!usable.empty())
     for (const EdgePlane& plane : set.planes) wanted.push_back(edgesOfCells(shape, usable, plane.axes));
 
   std::vector<std::uint64_t> first(set.planes.size() * layers);  // counts, then numbers, of each plane's layers
+  const CutTask task{shape, lower, upper, wanted};
+  const auto cut = simd == Simd::kWide ? cutLayerWide : cutLayerPortable;
   executor.run(layers, [&](std::size_t z) {
-    for (std::size_t p = 0; p < set.planes.size(); ++p) {
-      std::uint64_t count = cutLayer(shape, lower, upper, z, set.planes[p]);
-      if (!wanted.empty()) {
-        count = 0;
-        for (std::size_t w = z * layer_words; w < (z + 1) * layer_words; ++w)
-          count += static_cast<std::uint64_t>(std::popcount(set.planes[p].bits[w] &= wanted[p][w]));
-      }
-      first[p * layers + z] = count;
-    }
+    for (std::size_t p = 0; p < set.planes.size(); ++p) first[p * layers + z] = cut(task, p, z, set.planes[p]);
   });
   set.count = 0;
   for (std::uint64_t& number : first) set.count += std::exchange(number, set.count);
@@ -128,23 +183,17 @@ void numberCutEdges(const GridShape& shape, const BitPlane& lower, const BitPlan
                 std::to_string(set.count) + " vertices in one frame, local indices can name 2^32 - 1",
                 "cut the grid into parts");
   }
+  const auto number = simd == Simd::kWide ? numberLayerWide : numberLayerPortable;
   executor.run(layers, [&](std::size_t z) {
-    for (std::size_t p = 0; p < set.planes.size(); ++p) {
-      EdgePlane& plane = set.planes[p];
-      std::uint64_t number = first[p * layers + z];
-      for (std::size_t w = z * layer_words; w < (z + 1) * layer_words; ++w) {
-        plane.prefix[w] = static_cast<std::uint32_t>(number);
-        number += static_cast<std::uint64_t>(std::popcount(plane.bits[w]));
-      }
-    }
+    for (std::size_t p = 0; p < set.planes.size(); ++p) number(shape, z, first[p * layers + z], set.planes[p]);
   });
 }
 
-BitPlane cellsWithoutNan(const GridShape& shape, const FrameBits& lower, const FrameBits& upper) {
-  if (lower.nan.empty() && upper.nan.empty()) return {};
-  BitPlane touched = lower.nan.empty() ? upper.nan : lower.nan;
-  if (!lower.nan.empty() && !upper.nan.empty())
-    for (std::size_t w = 0; w < touched.size(); ++w) touched[w] |= upper.nan[w];
+BitPlane cellsWithoutNan(const GridShape& shape, const BitPlane& lower_nan, const BitPlane& upper_nan) {
+  if (lower_nan.empty() && upper_nan.empty()) return {};
+  BitPlane touched = lower_nan.empty() ? upper_nan : lower_nan;
+  if (!lower_nan.empty() && !upper_nan.empty())
+    for (std::size_t w = 0; w < touched.size(); ++w) touched[w] |= upper_nan[w];
   for (unsigned axis = kX; axis <= kZ; ++axis) spreadFromUpper(shape, axis, touched);
   for (std::uint64_t& word : touched) word = ~word;
   keepCells(shape, touched);
@@ -162,6 +211,28 @@ std::uint64_t countBits(const BitPlane& plane) {
   std::uint64_t count = 0;
   for (const std::uint64_t word : plane) count += static_cast<std::uint64_t>(std::popcount(word));
   return count;
+}
+
+std::array<std::uint64_t, 3> firstBit(const GridShape& shape, const BitPlane& plane) {
+  const auto word = static_cast<std::size_t>(
+      std::find_if(plane.begin(), plane.end(), [](std::uint64_t w) { return w != 0; }) - plane.begin());
+  const std::uint64_t row = word / shape.rowWords();
+  return {word % shape.rowWords() * 64 + static_cast<std::uint64_t>(std::countr_zero(plane[word])), row % shape.dims[1],
+          row / shape.dims[1]};
+}
+
+void shiftRow(std::span<const std::uint64_t> from, std::uint64_t shift, std::span<std::uint64_t> to) {
+  const std::size_t words = shift / 64;
+  const unsigned bits = static_cast<unsigned>(shift % 64);
+  const auto source = [&](std::size_t w) { return w < from.size() ? from[w] : 0; };
+  for (std::size_t w = 0; w < to.size(); ++w) {
+    if (w < words) {
+      to[w] = 0;
+      continue;
+    }
+    to[w] = source(w - words) << bits;
+    if (bits != 0 && w > words) to[w] |= source(w - words - 1) >> (64 - bits);
+  }
 }
 
 }  // namespace tet4d::hypermesh

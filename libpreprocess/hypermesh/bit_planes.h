@@ -11,19 +11,29 @@
 #include <vector>
 
 #include "libpreprocess/hypermesh/cell_table.h"
+#include "libpreprocess/hypermesh/sample_kernels.h"
 #include "libpreprocess/outofcore/executor.h"
 
 namespace tet4d::hypermesh {
 
 using BitPlane = std::vector<std::uint64_t>;
 
-// Samples along x, y, z of every frame, and how they lie in a plane.
+// The lattice of every frame — its samples, and `pad` layers of outside around them — and how it lies in a plane.
 struct GridShape {
-  std::array<std::uint64_t, 3> dims{};
+  std::array<std::uint64_t, 3> dims{};  // of the lattice
+  std::uint64_t pad = 0;
   std::size_t rowWords() const { return (dims[0] + 63) / 64; }
   std::size_t words() const { return rowWords() * dims[1] * dims[2]; }
-  std::size_t rowStart(std::uint64_t y, std::uint64_t z) const { return (z * dims[1] + y) * rowWords(); }
+  std::size_t rows() const { return dims[1] * dims[2]; }
+  std::size_t row(std::uint64_t y, std::uint64_t z) const { return z * dims[1] + y; }
+  std::size_t rowStart(std::uint64_t y, std::uint64_t z) const { return row(y, z) * rowWords(); }
   std::uint64_t cells() const { return (dims[0] - 1) * (dims[1] - 1) * (dims[2] - 1); }
+  std::uint64_t samples(unsigned axis) const { return dims[axis] - 2 * pad; }
+  bool isSample(unsigned axis, std::uint64_t index) const { return index >= pad && index < dims[axis] - pad; }
+  // Place of a lattice point's sample in its frame.
+  std::size_t sample(std::uint64_t x, std::uint64_t y, std::uint64_t z) const {
+    return ((z - pad) * samples(1) + (y - pad)) * samples(0) + (x - pad);
+  }
   // The bits of word w of a row that stand for x < limit.
   static std::uint64_t bitsBelow(std::uint64_t limit, std::size_t w) {
     const std::uint64_t first = std::uint64_t{w} * 64;
@@ -32,15 +42,20 @@ struct GridShape {
   }
 };
 
-// What is known of a frame once its samples are gone.
-struct FrameBits {
-  BitPlane inside;  // value >= isovalue
-  BitPlane nan;     // empty if there is none
+// Which points of a frame are inside (value >= isovalue), and which rows are alike throughout.
+struct SignPlane {
+  BitPlane inside;
+  std::vector<RowState> rows;
 };
+SignPlane makeSignPlane(const GridShape& shape);
+
+// What a sign plane holds.
+std::uint64_t signPlaneBytes(const GridShape& shape);
 
 // The cut edges of one direction, by base sample.
 struct EdgePlane {
   std::uint8_t axes = 0;  // axis mask: x 1, y 2, z 4, t 8
+  std::vector<std::uint8_t> used;  // per row: whether it has a cut edge; bits and prefixes of other rows mean nothing
   BitPlane bits;
   std::vector<std::uint32_t> prefix;  // per word: the number of its first vertex within the set
 
@@ -64,16 +79,23 @@ std::uint64_t edgeSetBytes(const GridShape& shape, std::size_t planes);
 
 // Finds and numbers the cut edges from `lower` to `upper` (the same plane for edges inside a frame). `usable`: the
 // cells that will be split, empty for all; an edge that belongs to none of them gets no vertex. Throws Error{kBadInput}
-// if the set has 2^32 vertices or more. O(words * planes) in tasks of one z layer.
-void numberCutEdges(const GridShape& shape, const BitPlane& lower, const BitPlane& upper, const BitPlane& usable,
-                    outofcore::Executor& executor, EdgeSet& set);
+// if the set has 2^32 vertices or more. O(rows + words of rows that are not alike) in tasks of one z layer.
+void numberCutEdges(const GridShape& shape, const SignPlane& lower, const SignPlane& upper, const BitPlane& usable,
+                    outofcore::Executor& executor, Simd simd, EdgeSet& set);
 
-// The cells of the slab between two frames that touch no NaN, by lowest corner; empty if that is all of them.
-BitPlane cellsWithoutNan(const GridShape& shape, const FrameBits& lower, const FrameBits& upper);
+// The cells of the slab between two frames that touch no NaN, by lowest corner; empty if that is all of them. A frame
+// without NaN has an empty plane.
+BitPlane cellsWithoutNan(const GridShape& shape, const BitPlane& lower_nan, const BitPlane& upper_nan);
 
 // The cells usable in either of two neighbouring slabs. Empty means all.
 BitPlane usableInEither(const BitPlane& a, const BitPlane& b);
 
 std::uint64_t countBits(const BitPlane& plane);
+
+// x, y, z of the first set bit; the plane must have one.
+std::array<std::uint64_t, 3> firstBit(const GridShape& shape, const BitPlane& plane);
+
+// Bit i of `from` becomes bit i + shift of `to`; all other bits of `to` become 0.
+void shiftRow(std::span<const std::uint64_t> from, std::uint64_t shift, std::span<std::uint64_t> to);
 
 }  // namespace tet4d::hypermesh

@@ -35,8 +35,8 @@ inline double crossingFraction(double v0, double v1, double iso) {
   return std::clamp(fraction, kCrossingMargin, 1 - kCrossingMargin);
 }
 
-// Coordinate index + fraction as f32, strictly between index and index + 1 (index < kMaxIndex, 0 < fraction < 1).
-inline float strictlyBetween(std::uint64_t index, double fraction) {
+// Coordinate index + fraction as f32, strictly between index and index + 1 (|index| < kMaxIndex, 0 < fraction < 1).
+inline float strictlyBetween(std::int64_t index, double fraction) {
   const auto low = static_cast<float>(index), high = static_cast<float>(index + 1);
   const auto at = static_cast<float>(static_cast<double>(index) + fraction);
   if (at <= low) return std::nextafter(low, high);

@@ -1,153 +1,171 @@
 #include "libpreprocess/hypermesh/marching_hypercubes.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "libpreprocess/error.h"
 #include "libpreprocess/hypermesh/bit_planes.h"
 #include "libpreprocess/hypermesh/crossing.h"
-#include "libpreprocess/hypermesh/frame_samples.h"
+#include "libpreprocess/hypermesh/frame_ring.h"
+#include "libpreprocess/hypermesh/marching_plan.h"
+#include "libpreprocess/hypermesh/iso_part.h"
+#include "libpreprocess/hypermesh/slab_columns.h"
 #include "libpreprocess/hypermesh/slab_tets.h"
 #include "libpreprocess/hypermesh/split_tables.h"
 
 namespace tet4d::hypermesh {
 namespace {
 
-// The samples an edge set's vertices are interpolated from.
-template <class T>
-struct EdgeSamples {
-  const T* lower;       // at the edges' bases
-  const T* upper;       // at their tips: the same frame, or the next
-  std::uint64_t frame;  // number of the lower frame
-};
+// With one thread a frame is looked at while its layers are in the cache; with more, all at once, so that every thread
+// has something to do.
+std::uint64_t runBytes(const outofcore::Executor& executor) {
+  return executor.threads() == 1 ? 256 * 1024 : ~std::uint64_t{0};
+}
 
-template <class T>
 class Extraction {
  public:
-  Extraction(exchange::FrameSource& source, Writer& writer, const Options& options, outofcore::Executor& executor,
+  Extraction(exchange::FrameSource& source, PageSink& sink, const Options& options, outofcore::Executor& executor,
              outofcore::MemoryBudget& memory, outofcore::Progress& progress)
       : source_(source),
-        writer_(writer),
+        sink_(sink),
         options_(options),
         executor_(executor),
         memory_(memory),
         progress_(progress),
         table_(tableOf(options.split)),
-        shape_{source.grid().dims},
-        frames_(source.times().size()),
-        reader_(source) {}
+        shape_(gridShape(source.grid(), options)),
+        isovalues_(options.isovalues()),
+        kernels_(makeSampleKernels(source.grid().type, isovalues_, options.simd)),
+        fixed_memory_(memory.reserve(plan(source, options).fixed_bytes, "frames and their bit planes")),
+        ring_(source, framesHeld(options), runBytes(executor)),
+        main_{*kernels_, [this](std::size_t frame) { return ring_.samples(frame); }},
+        columns_(shape_, options, source.grid().index_to_world, main_, isovalues_.size()) {
+    stats_.parts.resize(isovalues_.size());
+    for (std::size_t i = 0; i < isovalues_.size(); ++i) {
+      parts_.emplace_back(shape_, table_, *kernels_, i, options.simd);
+      stats_.parts[i].isovalue = isovalues_[i];
+    }
+    for (const Field& field : options.fields) fields_.emplace_back(field, options.simd);
+  }
 
   Stats run();
 
  private:
-  void read(std::size_t frame);
-  void placeVertices(const EdgeSet& set, const EdgeSamples<T>& samples, std::vector<Vec4f>& out);
-  void extractSlab(std::size_t slab, std::unique_ptr<Tet[]>& tets, std::uint64_t& count);
-  void writeSlab(std::size_t slab, std::span<const Tet> tets);
-  std::vector<std::uint64_t> countTets(const SlabTets& slab_tets);
-  Bounds4f boundsOf(std::span<const Tet> tets) const;
+  void read();
+  void classifyLayers(std::size_t frame, std::uint64_t z_begin, std::uint64_t z_end);
+  void classifyRow(std::size_t frame, std::uint64_t y, std::uint64_t z, std::uint64_t* scratch, SampleRange& range);
+  void refuseNan(std::size_t frame) const;
+  void startSlab(std::size_t slab);
+  void checkVertexCounts(std::size_t slab) const;
+  void extractPart(std::size_t slab, std::size_t p);
+  void reserveTets(std::uint64_t count, std::size_t slab, const IsoPart& part);
+  std::vector<std::uint64_t> countTets(const SlabTets& slab_tets, std::size_t p);
+  Bounds4f boundsOf(const IsoPart& part, std::span<const Tet> tets, std::size_t slab) const;
+  std::vector<Run> runsOf(std::size_t slab, std::size_t p) const;
+  void addPage(std::size_t p, const SlabPage& page, std::span<const Run> runs, const Bounds4f& bounds);
+  void addLastVertices(std::size_t frame);
+  Stats finish(std::size_t frames);
 
-  // Frame k lives at k modulo 2, its bits at k modulo 3, usable cells of slab k and numbers of F_k at k modulo 2.
-  T* samplesOf(std::size_t frame) { return samples_[frame % 2].data(); }
-  FrameBits& bitsOf(std::size_t frame) { return bits_[frame % 3]; }
-  BitPlane& usableOf(std::size_t slab) { return usable_[slab % 2]; }
-  EdgeSet& withinOf(std::size_t frame) { return within_[frame % 2]; }
-  bool isLast(std::size_t slab) const { return slab + 2 == frames_; }
+  BitPlane& nanOf(std::size_t frame) { return nans_[frame % 3]; }
+  const BitPlane& usableOf(std::size_t slab) const { return usable_[slab % 2]; }
+  const std::byte* samplesOf(std::size_t frame) const { return ring_.samples(frame); }
+  bool hasParts() const { return parts_.size() > 1; }
+  // The last page of a mesh of one part also owns the last frame's vertices.
+  bool joinsLast() const { return is_last_ && !hasParts(); }
 
   exchange::FrameSource& source_;
-  Writer& writer_;
+  PageSink& sink_;
   const Options& options_;
   outofcore::Executor& executor_;
   outofcore::MemoryBudget& memory_;
   outofcore::Progress& progress_;
   const CellTable& table_;
-  GridShape shape_;
-  std::size_t frames_;
-  FrameReader<T> reader_;
+  const GridShape shape_;
+  const std::vector<double> isovalues_;
+  std::unique_ptr<SampleKernels> kernels_;
+  outofcore::MemoryBudget::Reservation fixed_memory_, page_memory_;
+  FrameRing ring_;
+  FieldFrames main_;
+  SlabColumns columns_;
+  std::deque<FieldReader> fields_;
+  std::vector<IsoPart> parts_;
+  std::array<BitPlane, 3> nans_;    // by frame; empty without NaN, and where NaN is outside
+  std::array<BitPlane, 2> usable_;  // cells by slab; empty for all
+  std::unique_ptr<Tet[]> tets_;
+  std::uint64_t tet_capacity_ = 0;
+  std::uint64_t next_vertex_ = 0;
+  bool is_last_ = false;  // the slab in hand
   SampleRange range_;
   Stats stats_;
-  outofcore::MemoryBudget::Reservation position_memory_, page_memory_;
-
-  std::array<std::vector<T>, 2> samples_;
-  std::array<FrameBits, 3> bits_;
-  std::array<BitPlane, 2> usable_;  // empty for all cells
-  std::array<EdgeSet, 2> within_;   // F_k, F_{k+1}
-  EdgeSet between_;                 // E_k
-  std::vector<Vec4f> own_, next_;   // positions of the page's own vertices; of F_{k+1}
 };
 
-template <class T>
-void Extraction<T>::read(std::size_t frame) {
-  progress_.phase("read", frames_);
-  progress_.step(frame);
-  reader_.read(frame, samples_[frame % 2]);
-  FrameBits& bits = bitsOf(frame);
-  classify<T>(shape_, samples_[frame % 2], options_.iso, options_.nan != NanRule::kOutside, executor_, bits, range_);
-  progress_.step(frame + 1);
-  if (options_.nan != NanRule::kError || bits.nan.empty()) return;
-  const auto [x, y, z] = firstBit(shape_, bits.nan);
+// ---------------------------------------------------------------- frames
+
+void Extraction::classifyRow(std::size_t frame, std::uint64_t y, std::uint64_t z, std::uint64_t* scratch,
+                             SampleRange& range) {
+  const std::size_t words = (shape_.samples(0) + 63) / 64;
+  const std::size_t start = shape_.rowStart(y, z), row = shape_.row(y, z);
+  const std::uint64_t count = shape_.samples(0);
+  const std::byte* samples = samplesOf(frame) + shape_.sample(shape_.pad, y, z) * sampleBytes(source_.grid().type);
+  std::array<std::uint64_t*, 64> signs{};
+  std::array<RowState, 64> states{};
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    signs[i] = shape_.pad == 0 ? &parts_[i].signs(frame).inside[start] : scratch + i * words;
+  BitPlane& nan = nanOf(frame);
+  std::uint64_t* const nans =
+      nan.empty() ? nullptr : shape_.pad == 0 ? &nan[start] : scratch + parts_.size() * words;
+  kernels_->classifyRow(samples, count, std::span(signs.data(), parts_.size()), states.data(), nans, range);
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    SignPlane& plane = parts_[i].signs(frame);
+    const bool padded_inside = shape_.pad != 0 && states[i] == RowState::kInside;
+    plane.rows[row] = padded_inside ? RowState::kMixed : states[i];
+    if (shape_.pad != 0) shiftRow(std::span(signs[i], words), shape_.pad, std::span(&plane.inside[start], shape_.rowWords()));
+  }
+  if (nans != nullptr && shape_.pad != 0)
+    shiftRow(std::span(nans, words), shape_.pad, std::span(&nan[start], shape_.rowWords()));
+}
+
+void Extraction::classifyLayers(std::size_t frame, std::uint64_t z_begin, std::uint64_t z_end) {
+  std::vector<SampleRange> ranges(z_end - z_begin);
+  executor_.run(z_end - z_begin, [&](std::size_t i) {
+    const std::uint64_t z = z_begin + i + shape_.pad;
+    std::vector<std::uint64_t> scratch(shape_.pad == 0 ? 0 : (parts_.size() + 1) * shape_.rowWords());
+    for (std::uint64_t y = shape_.pad; y < shape_.dims[1] - shape_.pad; ++y)
+      classifyRow(frame, y, z, scratch.data(), ranges[i]);
+  });
+  for (const SampleRange& range : ranges) range_.add(range);
+}
+
+void Extraction::refuseNan(std::size_t frame) const {
+  const auto [x, y, z] = firstBit(shape_, nans_[frame % 3]);
   throw Error(FaultCode::kBadInput, source_.frameName(frame),
-              "frame " + std::to_string(frame) + ", sample " + std::to_string(x) + " " + std::to_string(y) + " " +
-                  std::to_string(z),
+              "frame " + std::to_string(frame) + ", sample " + std::to_string(x - shape_.pad) + " " +
+                  std::to_string(y - shape_.pad) + " " + std::to_string(z - shape_.pad),
               "is NaN", "leave such samples out with --nan mask, or count them as outside with --nan outside");
 }
 
-template <class T>
-void Extraction<T>::placeVertices(const EdgeSet& set, const EdgeSamples<T>& samples, std::vector<Vec4f>& out) {
-  const std::size_t first = out.size();
-  // While `out` grows, its old and its new place are held, beside the other set.
-  position_memory_ = {};
-  position_memory_ = memory_.reserve((own_.capacity() + next_.capacity() + first + set.count) * sizeof(Vec4f),
-                                     "vertices of frame " + std::to_string(samples.frame));
-  out.reserve(first + set.count);
-  out.resize(first + set.count);
-  const std::uint64_t row = shape_.dims[0], layer = row * shape_.dims[1];
-  const double iso = options_.iso;
-  executor_.run(shape_.dims[2], [&](std::size_t z) {
-    for (const EdgePlane& plane : set.planes) {
-      const unsigned axes = plane.axes;
-      const std::uint64_t tip = (axes & 1U) + (axes >> 1 & 1U) * row + (axes >> 2 & 1U) * layer;
-      const auto along = [&](unsigned axis, std::uint64_t index, double fraction) {
-        return axes >> axis & 1U ? strictlyBetween(index, fraction) : static_cast<float>(index);
-      };
-      for (std::uint64_t y = 0; y < shape_.dims[1]; ++y) {
-        for (std::size_t w = 0; w < shape_.rowWords(); ++w) {
-          const std::size_t word = shape_.rowStart(y, z) + w;
-          Vec4f* vertex = out.data() + first + plane.prefix[word];
-          for (std::uint64_t rest = plane.bits[word]; rest; rest &= rest - 1) {
-            const std::uint64_t x = w * 64 + static_cast<std::uint64_t>(std::countr_zero(rest));
-            const std::uint64_t base = z * layer + y * row + x;
-            const double fraction = crossingFraction(static_cast<double>(samples.lower[base]),
-                                                     static_cast<double>(samples.upper[base + tip]), iso);
-            *vertex++ = {along(0, x, fraction), along(1, y, fraction), along(2, z, fraction),
-                         along(3, samples.frame, fraction)};
-          }
-        }
-      }
-    }
-  });
+void Extraction::read() {
+  const std::size_t frame = ring_.framesRead();
+  progress_.phase("read", source_.times().size());
+  progress_.step(frame);
+  const std::uint64_t nans_before = range_.nan_samples;
+  const bool keeps_nan = options_.nan != NanRule::kOutside;
+  if (keeps_nan) nanOf(frame).assign(shape_.words(), 0);
+  ring_.readNext([&](std::uint64_t z_begin, std::uint64_t z_end) { classifyLayers(frame, z_begin, z_end); });
+  if (range_.nan_samples == nans_before) nanOf(frame).clear();
+  if (options_.nan == NanRule::kError && !nanOf(frame).empty()) refuseNan(frame);
+  progress_.step(frame + 1);
 }
 
-// The box of the vertices the tetrahedra use.
-template <class T>
-Bounds4f Extraction<T>::boundsOf(std::span<const Tet> tets) const {
-  Bounds4f bounds;
-  if (tets.empty()) return bounds;
-  if (usable_[0].empty() && usable_[1].empty()) {  // without masked cells every vertex is used
-    for (const Vec4f& v : own_) bounds.add(v);
-    for (const Vec4f& v : next_) bounds.add(v);
-    return bounds;
-  }
-  for (const Tet& tet : tets)
-    for (const std::uint32_t i : tet) bounds.add(i < own_.size() ? own_[i] : next_[i - own_.size()]);
-  return bounds;
-}
+// ---------------------------------------------------------------- pages
 
-// Counts every layer's tetrahedra in parallel; returns where each layer begins, and the total at the end.
-template <class T>
-std::vector<std::uint64_t> Extraction<T>::countTets(const SlabTets& slab_tets) {
+std::vector<std::uint64_t> Extraction::countTets(const SlabTets& slab_tets, std::size_t p) {
   const std::uint64_t layers = shape_.dims[2] - 1;
   std::vector<SlabTets::Count> counts(layers);
   executor_.run(layers, [&](std::size_t z) { counts[z] = slab_tets.countLayer(z); });
@@ -156,108 +174,171 @@ std::vector<std::uint64_t> Extraction<T>::countTets(const SlabTets& slab_tets) {
     stats_.active_cells += count.active_cells;
     first.push_back(first.back() + count.tets);
   }
+  stats_.parts[p].tets += first.back();
   return first;
 }
 
-template <class T>
-void Extraction<T>::extractSlab(std::size_t slab, std::unique_ptr<Tet[]>& tets, std::uint64_t& count) {
-  const EdgeSet& lower = withinOf(slab);
-  EdgeSet& upper = withinOf(slab + 1);
-  numberCutEdges(shape_, bitsOf(slab + 1).inside, bitsOf(slab + 1).inside,
-                 isLast(slab) ? usableOf(slab) : usableInEither(usableOf(slab), usableOf(slab + 1)), executor_, upper);
-  if ((lower.count + between_.count + upper.count) >> 32 != 0) {
-    throw Error(
-        FaultCode::kBadInput, source_.frameName(slab), "slab " + std::to_string(slab),
-        std::to_string(lower.count + between_.count + upper.count) + " vertices, local indices can name 2^32 - 1",
-        "cut the grid into parts");
+// A box of the vertices the tetrahedra use.
+Bounds4f Extraction::boundsOf(const IsoPart& part, std::span<const Tet> tets, std::size_t slab) const {
+  Bounds4f bounds;
+  if (tets.empty()) return bounds;
+  if (usable_[0].empty() && usable_[1].empty()) {  // without masked cells every vertex is used
+    for (const Vec4f& v : part.own()) bounds.add(v);
+    for (const Vec4f& v : part.next()) bounds.add(v);
+  } else {
+    const auto &own = part.own(), &next = part.next();
+    for (const Tet& tet : tets)
+      for (const std::uint32_t i : tet) bounds.add(i < own.size() ? own[i] : next[i - own.size()]);
   }
-  next_.clear();
-  placeVertices(upper, {samplesOf(slab + 1), samplesOf(slab + 1), slab + 1}, next_);
+  if (hasParts()) bounds.min.t = static_cast<float>(slab), bounds.max.t = static_cast<float>(slab + 1);
+  return bounds;
+}
 
-  const Slab planes{shape_, bitsOf(slab).inside, bitsOf(slab + 1).inside, usableOf(slab), lower, between_, upper};
-  const SlabTets slab_tets(table_, planes);
-  const std::vector<std::uint64_t> first = countTets(slab_tets);
-  count = first.back();
-  // The tetrahedra, the page's bytes and, if it is compressed, those once more; the last page also takes in `next_`.
-  const std::uint64_t joined = isLast(slab) ? (own_.size() + next_.size()) * sizeof(Vec4f) : 0;
-  const std::uint64_t page = std::max<std::uint64_t>(joined, own_.size() * sizeof(Vec4f)) + count * sizeof(Tet);
+// Where the next frame's vertices of part p will stand in the file.
+std::vector<Run> Extraction::runsOf(std::size_t slab, std::size_t p) const {
+  const std::uint64_t count = parts_[p].within(slab + 1).count;
+  if (count == 0 || joinsLast()) return {};
+  std::uint64_t first = next_vertex_;
+  for (std::size_t q = p; q < parts_.size(); ++q) first += parts_[q].own().size();
+  for (std::size_t q = 0; q < p; ++q) first += parts_[q].within(slab + 1).count + parts_[q].between(slab + 1).count;
+  return {{first, count}};
+}
+
+void Extraction::addPage(std::size_t p, const SlabPage& page, std::span<const Run> runs, const Bounds4f& bounds) {
+  IsoPart& part = parts_[p];
+  std::vector<FieldFrames> fields;
+  for (const FieldReader& field : fields_) fields.push_back(field.frames());
+  const auto columns = columns_.build(part, p, page, source_.times(), fields, executor_);
+  progress_.phase("write", source_.times().size() - 1);
+  sink_.add({part.own(), runs, page.tets, bounds, columns, p});
+  next_vertex_ += part.own().size();
+  stats_.parts[p].vertices += part.own().size();
+}
+
+void Extraction::reserveTets(std::uint64_t count, std::size_t slab, const IsoPart& part) {
+  const bool is_raw = options_.page_codec == paged::Codec::kRaw;
+  const std::uint64_t page = part.own().size_bytes() + count * sizeof(Tet);
   page_memory_ = {};
-  page_memory_ =
-      memory_.reserve(count * sizeof(Tet) + joined + page * (options_.page_codec == paged::Codec::kRaw ? 1 : 2),
-                      "slab " + std::to_string(slab) + " of the hypermesh");
-  tets = std::make_unique_for_overwrite<Tet[]>(count);
-  executor_.run(first.size() - 1, [&](std::size_t z) {
-    slab_tets.emitLayer(z, std::span(tets.get() + first[z], first[z + 1] - first[z]));
+  if (count > tet_capacity_) tets_.reset(), tet_capacity_ = 0;
+  // The tetrahedra and columns; a page that is compressed is put together first, and stands there once more encoded.
+  page_memory_ = memory_.reserve(std::max(count, tet_capacity_) * sizeof(Tet) +
+                                     columns_.bytes(part.own().size(), part.next().size()) + (is_raw ? 0 : 2 * page),
+                                 "slab " + std::to_string(slab) + " of the hypermesh");
+  if (tets_ != nullptr || count == 0) return;
+  tets_ = std::make_unique_for_overwrite<Tet[]>(count);
+  tet_capacity_ = count;
+}
+
+void Extraction::extractPart(std::size_t slab, std::size_t p) {
+  IsoPart& part = parts_[p];
+  const SlabTets slab_tets = part.slabTets(slab, usableOf(slab));
+  const std::vector<std::uint64_t> layers = countTets(slab_tets, p);
+  if (joinsLast()) part.joinNext(memory_);
+  reserveTets(layers.back(), slab, part);
+  executor_.run(layers.size() - 1, [&](std::size_t z) {
+    slab_tets.emitLayer(z, std::span(tets_.get() + layers[z], layers[z + 1] - layers[z]));
   });
+  const std::span<const Tet> tets(tets_.get(), layers.back());
+  addPage(p, {slab, joinsLast(), tets, layers}, runsOf(slab, p), boundsOf(part, tets, slab));
 }
 
-template <class T>
-void Extraction<T>::writeSlab(std::size_t slab, std::span<const Tet> tets) {
-  progress_.phase("write", frames_ - 1);
-  const Bounds4f bounds = boundsOf(tets);
-  if (isLast(slab)) {
-    own_.reserve(own_.size() + next_.size());
-    own_.insert(own_.end(), next_.begin(), next_.end());
-    next_.clear();
+// ---------------------------------------------------------------- the run
+
+void Extraction::checkVertexCounts(std::size_t slab) const {
+  for (const IsoPart& part : parts_) {
+    const std::uint64_t count = part.within(slab).count + part.between(slab).count + part.within(slab + 1).count;
+    if (count >> 32 == 0) continue;
+    throw Error(FaultCode::kBadInput, source_.frameName(slab), "slab " + std::to_string(slab),
+                std::to_string(count) + " vertices, local indices can name 2^32 - 1", "cut the grid into parts");
   }
-  std::vector<Run> runs;
-  if (!next_.empty()) runs.push_back({writer_.nextVertex() + own_.size(), next_.size()});
-  unwrap(writer_.addPage(own_, runs, tets, bounds));
-  stats_.vertices += own_.size();
-  stats_.tets += tets.size();
-  progress_.step(slab + 1);
 }
 
-template <class T>
-Stats Extraction<T>::run() {
-  const auto fixed = memory_.reserve(plan(source_, options_).fixed_bytes, "two frames and their bit planes");
-  for (std::vector<T>& frame : samples_) frame.resize(source_.grid().voxels());
-  for (EdgeSet& set : within_) set = makeEdgeSet(shape_, table_.directions, false);
-  between_ = makeEdgeSet(shape_, table_.directions, true);
-
-  read(0);
-  read(1);
-  usableOf(0) = cellsWithoutNan(shape_, bitsOf(0), bitsOf(1));
-  numberCutEdges(shape_, bitsOf(0).inside, bitsOf(0).inside, usableOf(0), executor_, withinOf(0));
-  placeVertices(withinOf(0), {samplesOf(0), samplesOf(0), 0}, own_);
-  for (std::size_t slab = 0; slab + 1 < frames_; ++slab) {
-    progress_.phase("extract", frames_ - 1);
-    progress_.step(slab);
-    if (!usableOf(slab).empty()) stats_.masked_cells += shape_.cells() - countBits(usableOf(slab));
-    numberCutEdges(shape_, bitsOf(slab).inside, bitsOf(slab + 1).inside, usableOf(slab), executor_, between_);
-    placeVertices(between_, {samplesOf(slab), samplesOf(slab + 1), slab}, own_);
-    // Frame `slab` has done its part: the frame after the next takes its place before the tetrahedra are made, because
-    // which vertices of F_{slab+1} exist depends on the cells that frame masks.
-    if (!isLast(slab)) {
-      read(slab + 2);
-      usableOf(slab + 1) = cellsWithoutNan(shape_, bitsOf(slab + 1), bitsOf(slab + 2));
+// Places E_k, takes in frame k + 2 where frame k stood, and numbers and places F_{k+1}: which of its vertices exist
+// depends on the cells that frame masks.
+void Extraction::startSlab(std::size_t slab) {
+  progress_.phase("extract", source_.times().size() - 1);
+  progress_.step(slab);
+  if (!usableOf(slab).empty()) stats_.masked_cells += shape_.cells() - countBits(usableOf(slab));
+  for (IsoPart& part : parts_) part.placeBetween(slab, samplesOf(slab), samplesOf(slab + 1), executor_, memory_);
+  is_last_ = !source_.hasFrame(slab + 2);
+  if (!is_last_) {
+    if (slab + 2 > kMaxIndex) refuseFrames(source_, slab + 3);
+    read();
+    usable_[(slab + 1) % 2] = cellsWithoutNan(shape_, nanOf(slab + 1), nanOf(slab + 2));
+  }
+  progress_.phase("extract", source_.times().size() - 1);
+  const BitPlane around = is_last_ ? usableOf(slab) : usableInEither(usableOf(slab), usableOf(slab + 1));
+  for (IsoPart& part : parts_) {
+    part.numberWithin(slab + 1, around, executor_);
+    if (is_last_) {
+      part.forgetBetween(slab + 1);
+    } else {
+      part.numberBetween(slab + 1, usableOf(slab + 1), executor_);
     }
-    progress_.phase("extract", frames_ - 1);
-    std::unique_ptr<Tet[]> tets;
-    std::uint64_t count = 0;
-    extractSlab(slab, tets, count);
-    progress_.step(slab + 1);
-    writeSlab(slab, {tets.get(), count});
-    std::swap(own_, next_);
+    part.placeWithin(slab + 1, samplesOf(slab + 1), executor_, memory_);
   }
-  if (stats_.masked_cells > 0) writer_.addFlags(kInnerBoundary);
-  stats_.frames = frames_;
-  stats_.voxels = frames_ * source_.grid().voxels();
+  checkVertexCounts(slab);
+}
+
+void Extraction::addLastVertices(std::size_t frame) {
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const std::vector<std::uint64_t> no_layers{0};
+    addPage(p, {frame, false, {}, no_layers}, {}, {});
+  }
+}
+
+Stats Extraction::finish(std::size_t frames) {
+  if (stats_.masked_cells > 0) sink_.addFlags(kInnerBoundary);
+  if (source_.isStream()) sink_.setTimes(source_.times(), static_cast<float>(frames - 1));
+  stats_.frames = frames;
+  stats_.voxels = frames * source_.grid().voxels();
   stats_.nan_samples = range_.nan_samples;
   stats_.min_value = range_.min;
   stats_.max_value = range_.max;
-  stats_.samples_xxh3 = reader_.digest();
+  stats_.samples_xxh3 = ring_.digest();
+  for (const FieldReader& field : fields_) stats_.fields_xxh3.push_back(field.digest());
+  for (const Stats::Part& part : stats_.parts) stats_.vertices += part.vertices, stats_.tets += part.tets;
   return stats_;
+}
+
+Stats Extraction::run() {
+  read();
+  read();
+  usable_[0] = cellsWithoutNan(shape_, nanOf(0), nanOf(1));
+  for (IsoPart& part : parts_) {
+    part.numberWithin(0, usableOf(0), executor_);
+    part.placeWithin(0, samplesOf(0), executor_, memory_);
+    part.advance();
+    part.numberBetween(0, usableOf(0), executor_);
+  }
+  std::size_t slab = 0;
+  for (;; ++slab) {
+    startSlab(slab);
+    for (FieldReader& field : fields_) field.readTo(slab + 1);
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+      progress_.phase("extract", source_.times().size() - 1);
+      extractPart(slab, p);
+    }
+    for (IsoPart& part : parts_) part.advance();
+    progress_.step(slab + 1);
+    if (is_last_) break;
+  }
+  if (hasParts()) addLastVertices(slab + 1);
+  return finish(slab + 2);
 }
 
 }  // namespace
 
-Stats buildHypermesh(exchange::FrameSource& source, Writer& writer, const Options& options,
+Stats buildHypermesh(exchange::FrameSource& source, PageSink& sink, const Options& options,
                      outofcore::Executor& executor, outofcore::MemoryBudget& memory, outofcore::Progress& progress) {
   checkSource(source, options);
-  if (fitsFloat(source.grid().type))
-    return Extraction<float>(source, writer, options, executor, memory, progress).run();
-  return Extraction<double>(source, writer, options, executor, memory, progress).run();
+  return Extraction(source, sink, options, executor, memory, progress).run();
+}
+
+Stats buildHypermesh(exchange::FrameSource& source, Writer& writer, const Options& options,
+                     outofcore::Executor& executor, outofcore::MemoryBudget& memory, outofcore::Progress& progress) {
+  FileSink sink(writer);
+  return buildHypermesh(source, sink, options, executor, memory, progress);
 }
 
 }  // namespace tet4d::hypermesh

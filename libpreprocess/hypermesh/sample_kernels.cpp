@@ -190,7 +190,8 @@ class TypedKernels final : public SampleKernels {
     const T* const to = typed(upper) + row.upper;
     const double iso = isovalues_[isovalue];
     const auto along = [&](unsigned axis, std::uint64_t index, double fraction) {
-      return (row.axes >> axis & 1U) != 0 ? strictlyBetween(index, fraction) : static_cast<float>(index);
+      return (row.axes >> axis & 1U) != 0 ? strictlyBetween(static_cast<std::int64_t>(index), fraction)
+                                          : static_cast<float>(index);
     };
     for (std::size_t w = 0; w < row.bits.size(); ++w) {
       for (std::uint64_t rest = row.bits[w]; rest != 0; rest &= rest - 1) {
@@ -202,6 +203,8 @@ class TypedKernels final : public SampleKernels {
     }
     return out;
   }
+
+  double isovalue(std::size_t i) const override { return isovalues_[i]; }
 
   double value(const std::byte* samples, std::size_t i) const override {
     return static_cast<double>(typed(samples)[i]);

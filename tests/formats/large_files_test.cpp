@@ -146,7 +146,7 @@ TEST(LargeFiles, HypermeshWithVerticesBeyondTwoToThe32) {
   const hypermesh::Tet tet{0, 1, 2, 3};
   for (std::size_t k = 2; k < 4; ++k) {
     const std::span<const Vec4f> own = k == 2 ? std::span<const Vec4f>(third) : std::span<const Vec4f>(fourth);
-    hypermesh::PageHeader head{vertices, own.size(), k - 2, k - 2, (k - 2) * 3, {}};
+    hypermesh::PageHeader head{vertices, own.size(), k - 2, k - 2, (k - 2) * 3, 0, {}};
     page_layout::Builder builder;
     builder.add<hypermesh::PageHeader>({&head, 1});
     builder.add(own);

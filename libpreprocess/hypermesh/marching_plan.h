@@ -1,0 +1,18 @@
+// What the run and its plan must agree on. Private to the room.
+#pragma once
+
+#include "libpreprocess/hypermesh/bit_planes.h"
+#include "libpreprocess/hypermesh/marching_hypercubes.h"
+
+namespace tet4d::hypermesh {
+
+// Most isovalues of one run.
+inline constexpr std::size_t kMaxParts = 64;
+
+GridShape gridShape(const exchange::GridInfo& grid, const Options& options);
+// Frames of samples in memory at a time.
+std::size_t framesHeld(const Options& options);
+// Throws Error{kBadInput}: more frames than f32 frame numbers allow.
+[[noreturn]] void refuseFrames(const exchange::FrameSource& source, std::size_t frames);
+
+}  // namespace tet4d::hypermesh
