@@ -64,8 +64,9 @@ BitPlane edgesOfCells(const GridShape& shape, const BitPlane& usable, unsigned a
 }
 
 // The cut edges of one row; returns how many. Rows that are alike and equal at both ends are not looked at.
-[[gnu::always_inline]] inline std::uint64_t cutRow(const GridShape& shape, const SignPlane& lower, const SignPlane& upper, std::uint64_t y,
-                     std::uint64_t z, EdgePlane& plane) {
+[[gnu::always_inline]] inline std::uint64_t cutRow(const GridShape& shape, const SignPlane& lower,
+                                                   const SignPlane& upper, std::uint64_t y, std::uint64_t z,
+                                                   EdgePlane& plane) {
   const unsigned dx = plane.axes & 1U, dy = plane.axes >> 1 & 1U, dz = plane.axes >> 2 & 1U;
   if (y + dy >= shape.dims[1] || z + dz >= shape.dims[2]) return 0;
   const std::size_t from = shape.row(y, z), to = shape.row(y + dy, z + dz);

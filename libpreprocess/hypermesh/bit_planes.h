@@ -54,7 +54,7 @@ std::uint64_t signPlaneBytes(const GridShape& shape);
 
 // The cut edges of one direction, by base sample.
 struct EdgePlane {
-  std::uint8_t axes = 0;  // axis mask: x 1, y 2, z 4, t 8
+  std::uint8_t axes = 0;           // axis mask: x 1, y 2, z 4, t 8
   std::vector<std::uint8_t> used;  // per row: whether it has a cut edge; bits and prefixes of other rows mean nothing
   BitPlane bits;
   std::vector<std::uint32_t> prefix;  // per word: the number of its first vertex within the set

@@ -42,8 +42,8 @@ void IsoPart::placeBetween(std::size_t slab, const std::byte* lower, const std::
 
 void IsoPart::joinNext(outofcore::MemoryBudget& memory) {
   position_memory_ = {};
-  position_memory_ = memory.reserve((own_.capacity() + own_.size() + 2 * next_.size()) * sizeof(Vec4f),
-                                    "vertices of the last frame");
+  position_memory_ =
+      memory.reserve((own_.capacity() + own_.size() + 2 * next_.size()) * sizeof(Vec4f), "vertices of the last frame");
   own_.reserve(own_.size() + next_.size());
   own_.insert(own_.end(), next_.begin(), next_.end());
   next_.clear();
@@ -89,13 +89,8 @@ Vec4f* IsoPart::placeRow(const EdgePlane& plane, std::uint64_t y, std::uint64_t 
   const std::size_t base = shape_.sample(0, y, z);
   const std::size_t tip = base + (plane.axes & 1U) + (plane.axes >> 1 & 1U) * shape_.dims[0] +
                           (plane.axes >> 2 & 1U) * shape_.dims[0] * shape_.dims[1];
-  const EdgeRowPlace row{std::span(plane.bits).subspan(shape_.rowStart(y, z), shape_.rowWords()),
-                         base,
-                         tip,
-                         plane.axes,
-                         y,
-                         z,
-                         frame};
+  const EdgeRowPlace row{
+      std::span(plane.bits).subspan(shape_.rowStart(y, z), shape_.rowWords()), base, tip, plane.axes, y, z, frame};
   return kernels_.placeRow(row, lower, upper, isovalue_, out);
 }
 

@@ -13,8 +13,8 @@
 #include "libpreprocess/hypermesh/bit_planes.h"
 #include "libpreprocess/hypermesh/crossing.h"
 #include "libpreprocess/hypermesh/frame_ring.h"
-#include "libpreprocess/hypermesh/marching_plan.h"
 #include "libpreprocess/hypermesh/iso_part.h"
+#include "libpreprocess/hypermesh/marching_plan.h"
 #include "libpreprocess/hypermesh/slab_columns.h"
 #include "libpreprocess/hypermesh/slab_tets.h"
 #include "libpreprocess/hypermesh/split_tables.h"
@@ -118,14 +118,14 @@ void Extraction::classifyRow(std::size_t frame, std::uint64_t y, std::uint64_t z
   for (std::size_t i = 0; i < parts_.size(); ++i)
     signs[i] = shape_.pad == 0 ? &parts_[i].signs(frame).inside[start] : scratch + i * words;
   BitPlane& nan = nanOf(frame);
-  std::uint64_t* const nans =
-      nan.empty() ? nullptr : shape_.pad == 0 ? &nan[start] : scratch + parts_.size() * words;
+  std::uint64_t* const nans = nan.empty() ? nullptr : shape_.pad == 0 ? &nan[start] : scratch + parts_.size() * words;
   kernels_->classifyRow(samples, count, std::span(signs.data(), parts_.size()), states.data(), nans, range);
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     SignPlane& plane = parts_[i].signs(frame);
     const bool padded_inside = shape_.pad != 0 && states[i] == RowState::kInside;
     plane.rows[row] = padded_inside ? RowState::kMixed : states[i];
-    if (shape_.pad != 0) shiftRow(std::span(signs[i], words), shape_.pad, std::span(&plane.inside[start], shape_.rowWords()));
+    if (shape_.pad != 0)
+      shiftRow(std::span(signs[i], words), shape_.pad, std::span(&plane.inside[start], shape_.rowWords()));
   }
   if (nans != nullptr && shape_.pad != 0)
     shiftRow(std::span(nans, words), shape_.pad, std::span(&nan[start], shape_.rowWords()));

@@ -7,9 +7,9 @@
 // and E_k and refers to F_{k+1} as its one run of foreign vertices, except that the last page owns that set too. A slab
 // without surface is an empty page. Tetrahedra come by cell: z, y, x.
 //
-// With several isovalues each is a part: slab k has a page for each, in the order of the isovalues, whose run of foreign
-// vertices lies in the part's next page; behind the last slab stands a page a part, without tetrahedra, that owns the
-// last frame's vertices. Such pages give their slab as time bounds.
+// With several isovalues each is a part: slab k has a page for each, in the order of the isovalues, whose run of
+// foreign vertices lies in the part's next page; behind the last slab stands a page a part, without tetrahedra, that
+// owns the last frame's vertices. Such pages give their slab as time bounds.
 //
 // `pad` layers of outside around every frame close the surface at the walls: vertices between a sample and the outside
 // stand next to the sample.
@@ -81,7 +81,7 @@ struct Stats {
   std::uint64_t nan_samples = 0;
   double min_value = std::numeric_limits<double>::infinity();  // of samples that are no NaN; min > max: there is none
   double max_value = -std::numeric_limits<double>::infinity();
-  std::uint64_t samples_xxh3 = 0;  // over the frames' XXH3s, each over its samples as stored, little-endian
+  std::uint64_t samples_xxh3 = 0;          // over the frames' XXH3s, each over its samples as stored, little-endian
   std::vector<std::uint64_t> fields_xxh3;  // the same of each field
   struct Part {
     double isovalue = 0;
@@ -99,8 +99,8 @@ struct Plan {
   std::uint64_t most_output_bytes = 0;   // every cell the worst, uncompressed
 };
 
-// Checks that a hypermesh can be made: at least two frames (waits for a stream's second one) and two samples along every
-// axis, none above 2^22 (positions are f32), finite and different isovalues, fields on the same grid. Throws
+// Checks that a hypermesh can be made: at least two frames (waits for a stream's second one) and two samples along
+// every axis, none above 2^22 (positions are f32), finite and different isovalues, fields on the same grid. Throws
 // Error{kBadInput, kUsage}.
 void checkSource(exchange::FrameSource& source, const Options& options);
 

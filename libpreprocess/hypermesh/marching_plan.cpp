@@ -39,8 +39,7 @@ void checkAxes(const exchange::FrameSource& source, const Options& options) {
       throw Error(FaultCode::kBadInput, source.times().empty() ? "" : source.frameName(0),
                   std::string("axis ") + "xyz"[axis], what, remedy);
     };
-    if (dim < 2)
-      bad(std::to_string(dim) + " sample; cells need two at least", "repeat the slice to give it thickness");
+    if (dim < 2) bad(std::to_string(dim) + " sample; cells need two at least", "repeat the slice to give it thickness");
     if (options.pad > kMaxIndex || dim - 1 + options.pad > kMaxIndex)
       bad(std::to_string(dim) + " samples and " + std::to_string(options.pad) + " of padding; f32 positions allow " +
               std::to_string(kMaxIndex + 1),
@@ -93,10 +92,10 @@ void refuseFrames(const exchange::FrameSource& source, std::size_t frames) {
 void checkSource(exchange::FrameSource& source, const Options& options) {
   checkIsovalues(options);
   if (!source.hasFrame(0) || !source.hasFrame(1)) {
-    throw Error(FaultCode::kBadInput, source.times().empty() ? "" : source.frameName(0), "",
-                std::to_string(source.times().size()) +
-                    " frame; a hypermesh lies between frames and needs two at least",
-                "give more frames, or slice a single one with a 3D tool");
+    throw Error(
+        FaultCode::kBadInput, source.times().empty() ? "" : source.frameName(0), "",
+        std::to_string(source.times().size()) + " frame; a hypermesh lies between frames and needs two at least",
+        "give more frames, or slice a single one with a 3D tool");
   }
   if (source.times().size() - 1 > kMaxIndex) refuseFrames(source, source.times().size());
   checkAxes(source, options);
@@ -158,7 +157,8 @@ Plan plan(exchange::FrameSource& source, const Options& options) {
   const std::uint64_t frame_vertices = points * within, slab_vertices = points * through;
   std::uint64_t components = 0;
   for (const Writer::Column& column : columnsOf(options)) components += column.components;
-  const std::uint64_t columns = components * sizeof(float) + (options.normals == Normals::kTets || options.velocity ? 32 : 0);
+  const std::uint64_t columns =
+      components * sizeof(float) + (options.normals == Normals::kTets || options.velocity ? 32 : 0);
   const std::uint64_t page = (2 * frame_vertices + slab_vertices) * (sizeof(Vec4f) + columns) + most_tets * sizeof(Tet);
   // Positions of every part; the tetrahedra of one. A page that is compressed stands there twice more.
   plan.most_page_bytes = page * (options.page_codec == paged::Codec::kRaw ? 2 : 3) +

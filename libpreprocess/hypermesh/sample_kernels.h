@@ -42,8 +42,8 @@ class SampleKernels {
   virtual bool classifyRow(const std::byte* samples, std::size_t count, std::span<std::uint64_t* const> signs,
                            RowState* states, std::uint64_t* nans, SampleRange& range) const = 0;
   // The vertices of a row's cut edges, in order (crossing.h). isovalue: number in the list given at creation.
-  virtual Vec4f* placeRow(const EdgeRowPlace& row, const std::byte* lower, const std::byte* upper,
-                          std::size_t isovalue, Vec4f* out) const = 0;
+  virtual Vec4f* placeRow(const EdgeRowPlace& row, const std::byte* lower, const std::byte* upper, std::size_t isovalue,
+                          Vec4f* out) const = 0;
   virtual double isovalue(std::size_t i) const = 0;
   // Sample i as a number.
   virtual double value(const std::byte* samples, std::size_t i) const = 0;

@@ -30,7 +30,7 @@ class FieldReader {
 // A slab's page in hand.
 struct SlabPage {
   std::size_t slab;
-  bool is_last;    // it also owns the next frame's vertices
+  bool is_last;  // it also owns the next frame's vertices
   std::span<const Tet> tets;
   std::span<const std::uint64_t> layers;  // where each layer's tetrahedra begin, and their end
 };

@@ -48,10 +48,11 @@ struct SlabLoops {
     const std::uint32_t* const offsets = slab_tets.table_.offsets.data();
     for (std::uint64_t y = 0; y + 1 < slab_tets.slab_.shape.dims[1]; ++y) {
       if (slab_tets.isRowAlike(y, z)) continue;
-      forActiveCells(slab_tets, y, z, [&](std::uint64_t, unsigned configuration) __attribute__((always_inline)) {
-        ++count.active_cells;
-        count.tets += offsets[configuration + 1] - offsets[configuration];
-      });
+      forActiveCells(
+          slab_tets, y, z, [&](std::uint64_t, unsigned configuration) __attribute__((always_inline)) {
+            ++count.active_cells;
+            count.tets += offsets[configuration + 1] - offsets[configuration];
+          });
     }
     return count;
   }
@@ -64,23 +65,25 @@ struct SlabLoops {
     for (std::uint64_t y = 0; y + 1 < slab_tets.slab_.shape.dims[1]; ++y) {
       if (slab_tets.isRowAlike(y, z)) continue;
       slab_tets.startRow(y, z, rows);
-      forActiveCells(slab_tets, y, z, [&](std::uint64_t x, unsigned configuration) __attribute__((always_inline)) {
-        for (const EdgeDirection& direction : table.directions) {
-          unsigned cut = (configuration ^ configuration >> direction.axes) & direction.bases;
-          for (; cut; cut &= cut - 1) {
-            const std::uint8_t e = direction.number[static_cast<std::size_t>(__builtin_ctz(cut))];
-            const EdgeRow& row = rows[e];
-            const std::uint64_t base_x = x + row.dx;
-            const std::size_t word = row.row + base_x / 64;
-            const std::uint64_t below = (std::uint64_t{1} << base_x % 64) - 1;
-            local[e] = row.first_local + row.plane->prefix[word] +
-                       static_cast<std::uint32_t>(__builtin_popcountll(row.plane->bits[word] & below));
-          }
-        }
-        const CellTet* tet = table.tets.data() + table.offsets[configuration];
-        const CellTet* const end = table.tets.data() + table.offsets[configuration + 1];
-        for (; tet != end; ++tet) *next++ = {local[(*tet)[0]], local[(*tet)[1]], local[(*tet)[2]], local[(*tet)[3]]};
-      });
+      forActiveCells(
+          slab_tets, y, z, [&](std::uint64_t x, unsigned configuration) __attribute__((always_inline)) {
+            for (const EdgeDirection& direction : table.directions) {
+              unsigned cut = (configuration ^ configuration >> direction.axes) & direction.bases;
+              for (; cut; cut &= cut - 1) {
+                const std::uint8_t e = direction.number[static_cast<std::size_t>(__builtin_ctz(cut))];
+                const EdgeRow& row = rows[e];
+                const std::uint64_t base_x = x + row.dx;
+                const std::size_t word = row.row + base_x / 64;
+                const std::uint64_t below = (std::uint64_t{1} << base_x % 64) - 1;
+                local[e] = row.first_local + row.plane->prefix[word] +
+                           static_cast<std::uint32_t>(__builtin_popcountll(row.plane->bits[word] & below));
+              }
+            }
+            const CellTet* tet = table.tets.data() + table.offsets[configuration];
+            const CellTet* const end = table.tets.data() + table.offsets[configuration + 1];
+            for (; tet != end; ++tet)
+              *next++ = {local[(*tet)[0]], local[(*tet)[1]], local[(*tet)[2]], local[(*tet)[3]]};
+          });
     }
     assert(next == out.data() + out.size());
   }

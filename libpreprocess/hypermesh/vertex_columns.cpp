@@ -43,9 +43,9 @@ SamplePoint endOf(const GridShape& shape, const LatticeEdge& edge, bool tip) {
 
 double valueAt(const GridShape& shape, const FieldFrames& field, const SamplePoint& point) {
   const auto& at = point.at;
-  const std::size_t i = (static_cast<std::size_t>(at[2]) * shape.samples(1) + static_cast<std::size_t>(at[1])) *
-                            shape.samples(0) +
-                        static_cast<std::size_t>(at[0]);
+  const std::size_t i =
+      (static_cast<std::size_t>(at[2]) * shape.samples(1) + static_cast<std::size_t>(at[1])) * shape.samples(0) +
+      static_cast<std::size_t>(at[0]);
   return field.kernels.value(field.samples(point.frame), i);
 }
 
@@ -67,9 +67,9 @@ Normal4 gradientAt(const GridShape& shape, const FieldFrames& field, std::span<c
     SamplePoint before = point, after = point;
     before.at[axis] = clampTo(point.at[axis] - 1, shape.samples(axis));
     after.at[axis] = clampTo(point.at[axis] + 1, shape.samples(axis));
-    gradient[axis] = slope(valueAt(shape, field, before), middle, valueAt(shape, field, after),
-                           static_cast<double>(before.at[axis]), static_cast<double>(point.at[axis]),
-                           static_cast<double>(after.at[axis]));
+    gradient[axis] =
+        slope(valueAt(shape, field, before), middle, valueAt(shape, field, after), static_cast<double>(before.at[axis]),
+              static_cast<double>(point.at[axis]), static_cast<double>(after.at[axis]));
   }
   SamplePoint before = point, after = point;
   before.frame = point.frame == 0 ? 0 : point.frame - 1;

@@ -1,8 +1,8 @@
 // Columns of a hypermesh's vertices: normals, velocities, other fields sampled on the surface.
 //
 // Normals are unit, in world space, out of the inside; a velocity is the speed of the surface along its normal, in
-// world units per world time: for the 4D normal N = (n, n_t) of the hypersurface it is -n_t / |n| along n / |n|. Where a
-// surface appears at once everywhere the speed is infinite; it is kept below the domain's diagonal per frame. Both
+// world units per world time: for the 4D normal N = (n, n_t) of the hypersurface it is -n_t / |n| along n / |n|. Where
+// a surface appears at once everywhere the speed is infinite; it is kept below the domain's diagonal per frame. Both
 // are zero where no normal can be told.
 #pragma once
 
