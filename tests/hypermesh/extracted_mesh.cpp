@@ -28,8 +28,7 @@ ExtractedMesh extractTo(const std::string& path, exchange::FrameSource& source, 
                         std::size_t threads) {
   ExtractedMesh mesh;
   {
-    Writer writer =
-        unwrap(Writer::create(path, meshHeader(source, options), source.times(), {}, options.page_codec, true));
+    Writer writer = createWriter(path, source, options, true);
     outofcore::ThreadExecutor executor(threads);
     outofcore::MemoryBudget memory;
     outofcore::Progress progress;
@@ -39,6 +38,7 @@ ExtractedMesh extractTo(const std::string& path, exchange::FrameSource& source, 
   const File file = unwrap(File::open(path));
   unwrap(file.verify());
   mesh.header = file.header();
+  mesh.columns.resize(file.columns().size());
   for (std::size_t k = 0; k < file.geometryPages(); ++k) {
     const GatheredPage page = unwrap(file.gather(k));
     mesh.vertices.insert(mesh.vertices.end(), page.view.vertices.begin(), page.view.vertices.end());
@@ -48,6 +48,13 @@ ExtractedMesh extractTo(const std::string& path, exchange::FrameSource& source, 
       mesh.tets.push_back(global);
     }
     mesh.pages.push_back({page.view.vertices.size(), page.view.tets.size()});
+    mesh.page_parts.push_back(page.view.header->part);
+    for (std::size_t c = 0; c < mesh.columns.size(); ++c) {
+      const paged::PageBytes bytes = unwrap(file.loadColumn(c, k));
+      const auto* values = reinterpret_cast<const float*>(bytes.bytes().data());
+      mesh.columns[c].insert(mesh.columns[c].end(), values,
+                             values + page.view.vertices.size() * file.columns()[c].components);
+    }
   }
   std::ifstream in(path, std::ios::binary);
   mesh.bytes.assign(std::istreambuf_iterator<char>(in), {});

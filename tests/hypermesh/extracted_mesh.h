@@ -17,6 +17,8 @@ struct ExtractedMesh {
   std::vector<Vec4f> vertices;
   std::vector<Tet> tets;
   std::vector<std::array<std::uint64_t, 2>> pages;  // owned vertices, tets
+  std::vector<std::uint64_t> page_parts;
+  std::vector<std::vector<float>> columns;  // of all vertices, by column
   std::vector<char> bytes;                          // the file
 };
 
