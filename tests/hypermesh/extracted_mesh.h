@@ -19,7 +19,7 @@ struct ExtractedMesh {
   std::vector<std::array<std::uint64_t, 2>> pages;  // owned vertices, tets
   std::vector<std::uint64_t> page_parts;
   std::vector<std::vector<float>> columns;  // of all vertices, by column
-  std::vector<char> bytes;                          // the file
+  std::vector<char> bytes;                  // the file
 };
 
 // A path for this test process, removed with it.

@@ -129,7 +129,8 @@ TEST(MarchingOptions, PaddingEqualsSamplesThatAreOutside) {
     const auto wide = [&](std::uint64_t n) { return n + 2 * pad; };
     const std::array<std::uint64_t, 3> dims = source.grid().dims;
     MemoryFrames<float> padded({wide(dims[0]), wide(dims[1]), wide(dims[2])}, 3, [&](auto x, auto y, auto z, auto t) {
-      const bool is_sample = x >= pad && x < dims[0] + pad && y >= pad && y < dims[1] + pad && z >= pad && z < dims[2] + pad;
+      const bool is_sample =
+          x >= pad && x < dims[0] + pad && y >= pad && y < dims[1] + pad && z >= pad && z < dims[2] + pad;
       return is_sample ? source.at(x - pad, y - pad, z - pad, t) : std::numeric_limits<float>::quiet_NaN();
     });
     for (const Split split : {Split::kHull, Split::kKuhn}) {
@@ -226,8 +227,9 @@ TEST(MarchingOptions, FramesStandInTheirOwnType) {
   MemoryFrames<float> floats = noise<float>({64, 64, 32}, 3, 1);
   const std::uint64_t voxels = bytes.grid().voxels();
   EXPECT_EQ(plan(floats, {.iso = 200}).fixed_bytes - plan(bytes, {.iso = 200}).fixed_bytes, 2 * 3 * voxels);
-  EXPECT_EQ(plan(bytes, {.iso = 200, .normals = Normals::kGradient}).fixed_bytes - plan(bytes, {.iso = 200}).fixed_bytes,
-            2 * voxels);
+  EXPECT_EQ(
+      plan(bytes, {.iso = 200, .normals = Normals::kGradient}).fixed_bytes - plan(bytes, {.iso = 200}).fixed_bytes,
+      2 * voxels);
   // Beside the frames: at most two and a half bytes a sample, on grids whose rows fill their words.
   EXPECT_LE(plan(bytes, {.iso = 200}).fixed_bytes, 2 * voxels + 5 * voxels / 2);
 }

@@ -17,8 +17,8 @@ namespace {
 
 template <class T>
 class EveryType : public ::testing::Test {};
-using SampleTypes = ::testing::Types<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::uint32_t, std::int32_t,
-                                     std::uint64_t, std::int64_t, float, double>;
+using SampleTypes = ::testing::Types<std::uint8_t, std::int8_t, std::uint16_t, std::int16_t, std::uint32_t,
+                                     std::int32_t, std::uint64_t, std::int64_t, float, double>;
 TYPED_TEST_SUITE(EveryType, SampleTypes);
 
 // Samples of a row: all bit patterns of the type, which among floats are NaNs, infinities and denormals too.
@@ -91,9 +91,7 @@ TYPED_TEST(EveryType, SignsAreExactComparisons) {
       for (std::size_t v = 0; v < isovalues.size(); ++v) {
         std::size_t inside = 0;
         for (const std::uint64_t word : signs[v]) inside += static_cast<std::size_t>(std::popcount(word));
-        EXPECT_EQ(states[v], inside == 0       ? RowState::kOutside
-                             : inside == count ? RowState::kInside
-                                               : RowState::kMixed);
+        EXPECT_EQ(states[v], inside == 0 ? RowState::kOutside : inside == count ? RowState::kInside : RowState::kMixed);
       }
     }
   }

@@ -39,7 +39,8 @@ struct Ball {
   }
 };
 
-MemoryFrames<float> framesOf(const Ball& ball, const AffineMap& map, const std::vector<double>& times, std::uint64_t n) {
+MemoryFrames<float> framesOf(const Ball& ball, const AffineMap& map, const std::vector<double>& times,
+                             std::uint64_t n) {
   MemoryFrames<float> frames({n, n, n}, times.size(), [&](auto x, auto y, auto z, auto k) {
     const Vec3 p = toWorld(map, {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
     return static_cast<float>(ball.value(p, times[k]));
