@@ -12,6 +12,7 @@ import t4container as t4
 import t4slice
 
 HEADER = struct.Struct("<QQQII12d8f8fd7Q")
+PART = struct.Struct("<d3Q")
 COLUMN = struct.Struct("<56sII")
 PAGE_HEADER = struct.Struct("<8Q")
 assert (HEADER.size, COLUMN.size, PAGE_HEADER.size) == (256, 64, 64)
@@ -37,7 +38,7 @@ class Hypermesh:
     """A hypermesh, everything in it proved but the faces."""
 
     def __init__(self, path):
-        self.container = t4.Container(path, "HYPM", 1, ("HHDR", "TIME", "COLS", "PAGE", "PTAB"))
+        self.container = t4.Container(path, "HYPM", 2, ("HHDR", "TIME", "COLS", "PART", "PAGE", "PTAB"))
         self._read_header()
         self.pages = t4.Pages(self.container)
         self.container.verify()
@@ -52,7 +53,7 @@ class Hypermesh:
         fields = HEADER.unpack(self.container.single("HHDR", HEADER.size))
         self.vertex_count, self.tet_count, self.frames, self.flags, column_count = fields[:5]
         self.index_to_world, self.domain, self.bounds = fields[5:17], fields[17:25], fields[25:33]
-        self.isovalue, reserved = fields[33], fields[34:]
+        self.isovalue, part_count, reserved = fields[33], fields[34], fields[35:]
         t4.require(not any(reserved), place, "reserved field is not zero")
         t4.require(self.flags & ~(ON_GRID | INNER_BOUNDARY) == 0, place, f"unknown flags {self.flags:#x}")
         t4.require(not math.isinf(self.isovalue), place, "isovalue is infinite")
@@ -66,6 +67,18 @@ class Hypermesh:
         t4.require(len(self.columns) == column_count, "section COLS", f"not the header's {column_count} columns")
         names = [column.name for column in self.columns]
         t4.require(len(set(names)) == len(names), "section COLS", "two columns have the same name")
+        self._read_parts(part_count)
+
+    def _read_parts(self, count):
+        """The isovalues of the parts; none for a mesh of one part."""
+        place = "section PART"
+        raw = self.container.content("PART", PART.size) if self.container.find("PART") else b""
+        parts = [PART.unpack_from(raw, at) for at in range(0, len(raw), PART.size)]
+        t4.require(len(parts) == count, place, f"not the header's {count} parts")
+        t4.require(not any(any(reserved) for _, *reserved in parts), place, "reserved field is not zero")
+        t4.require(not any(math.isinf(isovalue) for isovalue, *_ in parts), place, "isovalue is infinite")
+        t4.require(not parts or self.container.payload_version >= 2, place, "version 1 knows no parts")
+        self.parts = [isovalue for isovalue, *_ in parts]
 
     def _read_page(self, number):
         place, entry, page = f"page {number}", self.pages.entries[number], Page()
@@ -73,8 +86,9 @@ class Hypermesh:
         data = self.pages.load(number)
         t4.require(len(data) >= PAGE_HEADER.size, place, "shorter than its header")
         page.number, page.entry = number, entry
-        page.first, page.owned, tets, runs, foreign, *reserved = PAGE_HEADER.unpack_from(data)
+        page.first, page.owned, tets, runs, foreign, page.part, *reserved = PAGE_HEADER.unpack_from(data)
         t4.require(not any(reserved), place, "reserved field is not zero")
+        t4.require(page.part < max(1, len(self.parts)), place, f"part {page.part} is not there")
         counts = (page.first, page.owned, tets, foreign)
         t4.require(entry.counts == counts, place, "counts differ from the page table's")
         t4.require(page.owned + foreign <= 1 << 32, place, "more vertices than local indices can name")
@@ -173,8 +187,12 @@ class Hypermesh:
         yield t4.row("times", self.times, t4.text64)
         for column in self.columns:
             yield f"column {column.components} {column.name}"
+        for isovalue in self.parts:
+            yield t4.row("part", [isovalue], t4.text64)
         for page in self.geometry:
             yield t4.entry_line(page.number, page.entry)
+            if self.parts:
+                yield f"of_part {page.part}"
             for vertex in page.vertices:
                 yield t4.row("v", vertex, t4.text32)
             for run in page.runs:

@@ -72,6 +72,14 @@ ordered_json columnsJson(std::span<const ColumnEntry> columns) {
   return out;
 }
 
+// By number: what is at place i is part i.
+ordered_json partsJson(std::span<const hypermesh::PartEntry> parts) {
+  ordered_json out = ordered_json::array();
+  for (const hypermesh::PartEntry& part : parts)
+    out.push_back({{"isovalue", std::isnan(part.isovalue) ? ordered_json(nullptr) : ordered_json(part.isovalue)}});
+  return out;
+}
+
 void addPayload(ordered_json& out, const grid4::File& file) {
   const grid4::GridHeader& header = file.header();
   const std::uint64_t voxels = header.dims[0] * header.dims[1] * header.dims[2];
@@ -94,6 +102,7 @@ void addPayload(ordered_json& out, const hypermesh::File& file) {
   out["on_grid"] = (header.flags & hypermesh::kOnGrid) != 0;
   out["inner_boundary"] = (header.flags & hypermesh::kInnerBoundary) != 0;
   out["columns"] = columnsJson(file.columns());
+  if (!file.parts().empty()) out["parts"] = partsJson(file.parts());
   out["index_to_world"] = mapJson(header.index_to_world);
 }
 

@@ -95,6 +95,18 @@ std::vector<BadFile> badMeshHeaders() {
   column("components_0", "components", [](C& c) { c.components = 0; });
   column("components_5", "components", [](C& c) { c.components = 5; });
   column("reserved", "reserved", [](C& c) { c.reserved = 1; });
+  const auto part = [&](std::string name, std::string place, std::string what, auto forge) {
+    all.push_back({"mesh_part_" + name + ".t4h", "mesh_parts.t4h", true, std::move(place), std::move(what), forge});
+  };
+  using P = hypermesh::PartEntry;
+  part("infinite", "section PART", "infinite",
+       [](Image& i) { i.item<P>(hypermesh::kParts, 0).isovalue = std::numeric_limits<double>::infinity(); });
+  part("reserved", "section PART", "reserved", [](Image& i) { i.item<P>(hypermesh::kParts, 1).reserved[2] = 1; });
+  part("count", "section PART", "the header says", [](Image& i) { i.item<H>(hypermesh::kHeader).parts = 3; });
+  part("missing", "section PART", "the header says", [](Image& i) { i.item<H>(hypermesh::kHeader).parts = 0; });
+  part("version", "section PART", "version 1", [](Image& i) { i.header().payload_version = 1; });
+  all.push_back({"mesh_part_page.t4h", "mesh_parts.t4h", false, "page 0", "part that is not there",
+                 [](Image& i) { i.inPage<hypermesh::PageHeader>(0, 0).part = 2; }});
   all.push_back({"mesh_column_size.t4h", "mesh_columns.t4h", true, "section PTAB", "size",
                  [](Image& i) { i.item<C>(hypermesh::kColumns, 1).components = 1; }});
   all.push_back(

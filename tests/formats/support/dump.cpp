@@ -139,11 +139,13 @@ Result<std::string> dump(const hypermesh::File& file) {
   lines.word("bounds").vec(h.bounds.min).vec(h.bounds.max).end();
   lines.word("isovalue").number(h.isovalue).end().word("times").numbers(file.times()).end();
   for (const auto& c : file.columns()) lines.word("column").number(c.components).word(c.name).end();
+  for (const auto& part : file.parts()) lines.word("part").number(part.isovalue).end();
   for (std::size_t k = 0; k < file.geometryPages(); ++k) {
     auto page = file.gather(k);
     if (!page.ok()) return page.fault();
     const auto& view = page.value().view;
     lines.page(k * (1 + file.columns().size()), file.geometryEntry(k));
+    if (h.parts != 0) lines.word("of_part").number(view.header->part).end();
     for (const Vec4f& v : view.vertices) lines.word("v").vec(v).end();
     for (const auto& run : view.runs) lines.word("run").number(run.first).number(run.count).end();
     for (const auto& tet : view.tets) lines.word("tet").numbers(tet).end();

@@ -146,11 +146,16 @@ Status writeGrid(const std::string& path, SampleType type, std::array<std::uint6
 }
 
 // `columns`: with a scalar and a vector per vertex; `gaps`: with empty slabs in front, between and behind.
-Status writeMesh(const std::string& path, const Sheet& sheet, paged::Codec codec, bool columns, bool gaps) {
+// Its pages belong to as many `parts` in turn; the last has no isovalue.
+Status writeMesh(const std::string& path, const Sheet& sheet, paged::Codec codec, bool columns, bool gaps,
+                 std::size_t parts = 0) {
   std::vector<hypermesh::Writer::Column> declared;
   if (columns) declared = {{"pressure", 1}, {"velocity \xc3\xbc", 3}};
-  auto writer = hypermesh::Writer::create(path, sheet.header, sheet.times, declared, codec, true);
+  std::vector<double> isovalues(parts, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t p = 0; p + 1 < parts; ++p) isovalues[p] = 0.25 + static_cast<double>(p);
+  auto writer = hypermesh::Writer::create(path, sheet.header, sheet.times, declared, codec, true, isovalues);
   if (!writer.ok()) return writer.fault();
+  std::size_t pages = 0;
   const auto add = [&](const Sheet::Page& page) {
     std::vector<float> pressure, velocity;
     for (const Vec4f& v : page.vertices) {
@@ -159,7 +164,7 @@ Status writeMesh(const std::string& path, const Sheet& sheet, paged::Codec codec
     }
     const std::array<std::span<const float>, 2> values{pressure, velocity};
     return writer.value().addPage(page.vertices, page.runs, page.tets, page.bounds,
-                                  std::span(values).first(declared.size()));
+                                  std::span(values).first(declared.size()), parts == 0 ? 0 : pages++ % parts);
   };
   for (const Sheet::Page& page : sheet.pages) {
     if (gaps) {
@@ -271,6 +276,8 @@ std::vector<Sample> allSamples() {
        [=](auto& p) { return writeMesh(p, withoutPages(), raw, false, false); }},
       {"mesh_columns.t4h", hypermesh::kPayload, true,
        [=](auto& p) { return writeMesh(p, makeSheet(1, 1), raw, true, false); }},
+      {"mesh_parts.t4h", hypermesh::kPayload, true,
+       [=](auto& p) { return writeMesh(p, makeSheet(1, 1), raw, false, true, 2); }},
       {"mesh_gaps_zstd.t4h", hypermesh::kPayload, false,
        [=](auto& p) { return writeMesh(p, makeSheet(2, 1), zstd, false, true); }},
       {"mesh_columns_zstd.t4h", hypermesh::kPayload, false,
