@@ -90,6 +90,33 @@ const char* checkRuns(const PageView& page, std::uint64_t total_vertices) {
   return foreign == page.header->foreign ? nullptr : "its runs do not sum to its foreign vertices";
 }
 
+// A part of a run of foreign vertices that one page owns.
+struct OwnedPart {
+  std::size_t owner;           // geometry page
+  std::uint64_t first, count;  // among its own vertices
+};
+
+// Runs, in order, cut where their owners change. O(parts log pages). Every vertex has an owner: checkRuns and
+// checkPages.
+std::vector<OwnedPart> ownedParts(const File& file, std::span<const Run> runs) {
+  std::vector<OwnedPart> parts;
+  for (const Run& run : runs) {
+    for (std::uint64_t at = run.first; at < run.first + run.count;) {
+      // The last page that begins at or before the vertex; the vertex numbers grow with the pages.
+      std::size_t low = 0, high = file.geometryPages();
+      while (high - low > 1) {
+        const std::size_t middle = low + (high - low) / 2;
+        (file.geometryEntry(middle).counts[0] <= at ? low : high) = middle;
+      }
+      const std::uint64_t first = file.geometryEntry(low).counts[0], owned = file.geometryEntry(low).counts[1];
+      const std::uint64_t end = std::min(run.first + run.count, first + owned);
+      parts.push_back({low, at - first, end - at});
+      at = end;
+    }
+  }
+  return parts;
+}
+
 }  // namespace
 
 std::uint64_t PageView::globalOf(std::uint32_t local) const {
@@ -203,35 +230,44 @@ Result<GatheredPage> File::gather(std::size_t k) const {
   if (!bytes.ok()) return bytes.fault();
   page.bytes = std::move(bytes).value();
   page.positions.assign(page.view.vertices.begin(), page.view.vertices.end());
-  // The geometry page that owns a global vertex: the last that begins at or before it and owns any.
-  const auto ownerOf = [&](std::uint64_t vertex) {
-    std::size_t low = 0, high = geometryPages();
-    while (high - low > 1) {
-      const std::size_t middle = low + (high - low) / 2;
-      (geometryEntry(middle).counts[0] <= vertex ? low : high) = middle;
-    }
-    return low;
-  };
   std::size_t owner = geometryPages();  // whose page owner_bytes is
   paged::PageBytes owner_bytes;
   PageView owner_view;
-  for (const Run& run : page.view.runs) {
-    // A run may span several owners; the vertex numbers grow with the pages.
-    for (std::uint64_t at = run.first; at < run.first + run.count;) {
-      if (const std::size_t wanted = ownerOf(at); wanted != owner) {
-        auto loaded = loadPage(wanted, owner_view);
-        if (!loaded.ok()) return loaded.fault();
-        owner_bytes = std::move(loaded).value();
-        owner = wanted;
-      }
-      const std::uint64_t first = owner_view.header->first_vertex;
-      const std::uint64_t end = std::min(run.first + run.count, first + owner_view.header->owned);
-      const auto part = owner_view.vertices.subspan(at - first, end - at);
-      page.positions.insert(page.positions.end(), part.begin(), part.end());
-      at = end;
+  for (const OwnedPart& part : ownedParts(*this, page.view.runs)) {
+    if (part.owner != owner) {
+      auto loaded = loadPage(part.owner, owner_view);
+      if (!loaded.ok()) return loaded.fault();
+      owner_bytes = std::move(loaded).value();
+      owner = part.owner;
     }
+    const auto positions = owner_view.vertices.subspan(part.first, part.count);
+    page.positions.insert(page.positions.end(), positions.begin(), positions.end());
   }
   return page;
+}
+
+Result<std::vector<float>> File::gatherColumn(std::size_t c, std::size_t k, const PageView& page) const {
+  const std::size_t components = columns_[c].components;
+  std::vector<float> values;
+  values.reserve((page.header->owned + page.header->foreign) * components);
+  paged::PageBytes bytes;
+  std::size_t loaded_owner = geometryPages();  // whose column `bytes` is
+  const auto append = [&](const OwnedPart& part) -> Status {
+    if (part.owner != loaded_owner) {
+      auto loaded = loadColumn(c, part.owner);
+      if (!loaded.ok()) return loaded.fault();
+      bytes = std::move(loaded).value();
+      loaded_owner = part.owner;
+    }
+    const auto* floats = reinterpret_cast<const float*>(bytes.bytes().data());
+    values.insert(values.end(), floats + part.first * components, floats + (part.first + part.count) * components);
+    return {};
+  };
+  if (Status own = append({k, 0, page.header->owned}); !own.ok()) return own.fault();
+  for (const OwnedPart& part : ownedParts(*this, page.runs)) {
+    if (Status status = append(part); !status.ok()) return status.fault();
+  }
+  return values;
 }
 
 Result<std::uint64_t> File::contentDigest() const {

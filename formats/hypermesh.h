@@ -119,6 +119,10 @@ class File {
   Result<std::uint64_t> contentDigest() const;
   // Loads and proves geometry page k and gathers its foreign vertices from the pages that own them. O(page + owners).
   Result<GatheredPage> gather(std::size_t k) const;
+  // Column c for every local index of geometry page k, whose view is `page`: components floats each, own vertices
+  // first, foreign ones from the columns of the pages that own them. O(page + owners), memory of one column page beside
+  // it.
+  Result<std::vector<float>> gatherColumn(std::size_t c, std::size_t k, const PageView& page) const;
   // Column c of geometry page k: components * owned floats.
   Result<paged::PageBytes> loadColumn(std::size_t c, std::size_t k) const;
   // Sections, padding, all pages and indices. O(file), memory of one page and its neighbours. Faces: topology/.

@@ -34,7 +34,7 @@ void convertHypermesh(cli::Session& session, const Options& options) {
     failUsage("several inputs, but a hypermesh is converted alone", "give one .t4h at a time");
   const hypermesh::File mesh = unwrap(hypermesh::File::open(options.inputs.front()));
   if (!options.wantsSlices()) {
-    if (options.normals) failUsage("--normals is for slices", "give --at or --times");
+    if (!options.sliceOption().empty()) failUsage(options.sliceOption() + " is for slices", "give --at or --times");
     writeWhole(session, mesh);
   } else {
     writeSlices(session, mesh, options);
@@ -66,13 +66,19 @@ int main(int argc, char** argv) {
   command.example("tet4d-convert dam.t4h --at 0.35 -o dam.ply", "the surface at world time 0.35")
       .example("tet4d-convert dam.t4h --times 0f:75f:0.5f -o dam.pvd", "two slices a frame, for ParaView")
       .example("tet4d-convert dam.t4h --times 0:1:0.01 -o 'slices/%04d.ply'", "a hundred and one numbered files")
+      .example("tet4d-convert dam.t4h --at 20f --normals --velocity -o dam.glb", "with normals and how fast it moves")
       .example("tet4d-convert dam.t4h -o dam.vtu", "the whole hypermesh, tetrahedra with a point array t")
       .example("tet4d-convert alpha_*.nrrd -o alpha.t4g", "frames into one file")
       .positional("FILE", "a hypermesh (.t4h), or frames in time order", &options.inputs)
       .heading("Slices")
       .option("--at", "T", "slice at a world time, or at a frame with the suffix f", &options.at)
       .option("--times", "A:B:STEP", "slices from A to B, both included; f as in --at", &options.times)
-      .flag("--normals", "write vertex normals, area-weighted", &options.normals)
+      .flag("--normals", "write normals at vertices", &options.normals)
+      .option("--normals-from", "WHAT", "area-weighted from the slice, or the hypermesh's column normal",
+              cli::Choice{&options.normals_from, {"slice", "column"}})
+      .option("--columns", "NAME,...", "columns of the hypermesh to interpolate: names, all or none", &options.columns)
+      .flag("--velocity", "write the velocity along the normal: the column, else computed from the tetrahedra",
+            &options.velocity)
       .heading("Frames")
       .flag("--allow-gaps", "accept holes in the files' numbering", &options.allow_gaps)
       .option("--frame-times", "T,T,...", "world times of the frames, instead of the files'", &options.frame_times)

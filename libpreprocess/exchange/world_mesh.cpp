@@ -32,6 +32,27 @@ bool needsDouble(const AffineMap& map, const Bounds4f& domain) {
   return farthest > 4 * extent;
 }
 
+double floatError(const WorldMesh& mesh, const std::array<double, 3>& origin) {
+  double most = 0;
+  for (const auto& point : mesh.points) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double exact = point[c] - origin[c];
+      most = std::max(most, std::abs(double{static_cast<float>(exact)} - exact));
+    }
+  }
+  return most;
+}
+
+void takeNormals(WorldMesh& mesh, std::size_t column) {
+  const std::vector<float>& values = mesh.columns[column].values;
+  mesh.normals.clear();
+  mesh.normals.reserve(values.size() / 3);
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
+    mesh.normals.push_back({values[i], values[i + 1], values[i + 2]});
+  }
+  mesh.columns.erase(mesh.columns.begin() + static_cast<std::ptrdiff_t>(column));
+}
+
 WorldMesh worldMesh(const SliceMesh& slice, const AffineMap& map, bool with_normals) {
   WorldMesh mesh;
   mesh.triangles = slice.triangles;

@@ -2,8 +2,11 @@
 // (outofcore/output_file.h). All throw Error: kIo or kNoSpace for the output, kBadInput for a damaged input.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,11 +15,52 @@
 
 namespace tet4d::exchange {
 
-// PLY, binary little-endian: x y z (float or, if `as_double`, double), nx ny nz if the mesh has normals, triangles.
-void writePly(const std::string& path, const WorldMesh& mesh, bool as_double, bool force);
+// What a slice's file is told beside its mesh.
+struct MeshFileOptions {
+  double time = 0;                        // world; kept by .vtp and .glb
+  bool as_double = false;                 // needsDouble(): float32 would be too coarse
+  std::array<double, 3> origin{0, 0, 0};  // of the map; .glb's float32 coordinates start there if as_double
+  unsigned draco_bits = 14;               // 1..30, of .drc
+  bool force = false;
+};
 
-// VTK XML PolyData, appended raw data, 64-bit headers. `time` (world) goes into the field TimeValue.
-void writeVtp(const std::string& path, const WorldMesh& mesh, double time, bool as_double, bool force);
+// A format of slices and what it can hold.
+struct MeshFormat {
+  std::string_view suffix;
+  bool normals, columns, doubles;
+};
+// Those of writeSlice(), in the order messages name them.
+std::span<const MeshFormat> meshFormats();
+// The one of a file's suffix, or null.
+const MeshFormat* meshFormatOf(const std::string& path);
+
+// What writing cost in exactness.
+struct WriteLoss {
+  double position_world = 0;  // largest distance along an axis between a point and what the file says of it
+};
+
+// Writes a slice in the format of its suffix, which must be one of meshFormats(). Same mesh, same bytes. O(mesh).
+WriteLoss writeSlice(const std::string& path, const WorldMesh& mesh, const MeshFileOptions& options);
+
+// PLY, binary little-endian: x y z (float or, if as_double, double), nx ny nz if the mesh has normals, a property a
+// component of each column (name, or name_x … name_w), triangles.
+void writePly(const std::string& path, const WorldMesh& mesh, const MeshFileOptions& options);
+
+// VTK XML PolyData, appended raw data, 64-bit headers. The time goes into the field TimeValue; normals and a velocity
+// are the active normals and vectors.
+void writeVtp(const std::string& path, const WorldMesh& mesh, const MeshFileOptions& options);
+
+// OFF (NOFF with normals) and OBJ: text, the shortest that reads back to the same float or double.
+void writeOff(const std::string& path, const WorldMesh& mesh, const MeshFileOptions& options);
+void writeObj(const std::string& path, const WorldMesh& mesh, const MeshFileOptions& options);
+
+// STL, binary: float32, each triangle with its own normal (zero for one without area).
+void writeStl(const std::string& path, const WorldMesh& mesh, const MeshFileOptions& options);
+
+// glTF 2.0, binary: one node with one mesh, POSITION, NORMAL and an attribute _NAME a column, u32 indices; axes as they
+// are, the time in the scene's extras. If as_double, coordinates are from `origin`, which the node's translation adds.
+// glTF wants unit normals: where there is none, +z stands. Throws Error{kBadInput} above 4 GiB, the format's end.
+void writeGlb(const std::string& path, const WorldMesh& mesh, const MeshFileOptions& options);
 
 // ParaView's series: times and the names of their files, relative to the .pvd.
 void writePvd(const std::string& path, const std::vector<std::pair<double, std::string>>& steps, bool force);

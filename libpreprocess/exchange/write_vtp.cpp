@@ -1,26 +1,71 @@
+#include "libpreprocess/exchange/column_names.h"
 #include "libpreprocess/exchange/number_text.h"
 #include "libpreprocess/exchange/vtk_xml.h"
 #include "libpreprocess/exchange/write_mesh.h"
 
 namespace tet4d::exchange {
 
-void writeVtp(const std::string& path, const WorldMesh& mesh, double time, bool as_double, bool force) {
+namespace {
+
+// The arrays of the points: names safe and no two alike, sizes, and which of them VTK takes for normals and vectors.
+class PointArrays {
+ public:
+  explicit PointArrays(const WorldMesh& mesh) : mesh_(mesh) {
+    if (!mesh.normals.empty()) normals_ = names_.unique("Normals");
+    for (const MeshColumn& column : mesh.columns) columns_.push_back(names_.unique(printableName(column.name)));
+  }
+
+  void declare(VtkHeader& header) const {
+    if (mesh_.normals.empty() && mesh_.columns.empty()) return;
+    std::string active = mesh_.normals.empty() ? "" : " Normals=\"" + normals_ + "\"";
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      const MeshColumn& column = mesh_.columns[c];
+      if (column.name == kVelocity && column.components == 3) active += " Vectors=\"" + xmlText(columns_[c]) + "\"";
+    }
+    header.add("      <PointData" + active + ">\n");
+    if (!mesh_.normals.empty()) header.array("Float32", normals_, 3, mesh_.normals.size() * sizeof(Vec3f));
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      header.array("Float32", columns_[c], mesh_.columns[c].components, bytesOf(mesh_.columns[c]));
+    }
+    header.add("      </PointData>\n");
+  }
+
+  void write(outofcore::OutputFile& file) const {
+    if (!mesh_.normals.empty()) {
+      beginVtkArray(file, mesh_.normals.size() * sizeof(Vec3f));
+      file.write(std::as_bytes(std::span(mesh_.normals)));
+    }
+    for (const MeshColumn& column : mesh_.columns) {
+      beginVtkArray(file, bytesOf(column));
+      file.write(std::as_bytes(std::span(column.values)));
+    }
+  }
+
+ private:
+  static std::uint64_t bytesOf(const MeshColumn& column) { return column.values.size() * sizeof(float); }
+
+  const WorldMesh& mesh_;
+  UniqueNames names_;
+  std::string normals_;
+  std::vector<std::string> columns_;
+};
+
+}  // namespace
+
+void writeVtp(const std::string& path, const WorldMesh& mesh, const MeshFileOptions& options) {
+  const bool as_double = options.as_double;
   const std::uint64_t points = mesh.points.size(), triangles = mesh.triangles.size();
   const std::uint64_t point_bytes = points * 3 * (as_double ? sizeof(double) : sizeof(float));
-  const std::uint64_t normal_bytes = mesh.normals.size() * sizeof(Vec3f);
   const std::uint64_t index_bytes = triangles * 3 * sizeof(std::int64_t),
                       offset_bytes = triangles * sizeof(std::int64_t);
 
+  const PointArrays arrays(mesh);
   VtkHeader header("PolyData");
-  header.timeValue(time);
+  header.timeValue(options.time);
   header.add("    <Piece NumberOfPoints=\"" + std::to_string(points) +
              "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
              std::to_string(triangles) + "\">\n");
-  if (!mesh.normals.empty()) {
-    header.add("      <PointData Normals=\"Normals\">\n");
-    header.array("Float32", "Normals", 3, normal_bytes);
-    header.add("      </PointData>\n");
-  }
+  arrays.declare(header);
   header.add("      <Points>\n");
   header.array(as_double ? "Float64" : "Float32", "Points", 3, point_bytes);
   header.add("      </Points>\n      <Polys>\n");
@@ -28,12 +73,9 @@ void writeVtp(const std::string& path, const WorldMesh& mesh, double time, bool 
   header.array("Int64", "offsets", 1, offset_bytes);
   header.add("      </Polys>\n    </Piece>\n");
 
-  outofcore::OutputFile file(path, force);
+  outofcore::OutputFile file(path, options.force);
   file.write(header.finish());
-  if (!mesh.normals.empty()) {
-    beginVtkArray(file, normal_bytes);
-    file.write(std::as_bytes(std::span(mesh.normals)));
-  }
+  arrays.write(file);
   beginVtkArray(file, point_bytes);
   for (const auto& point : mesh.points) {
     for (const double coordinate : point) {

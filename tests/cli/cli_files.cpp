@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "formats/dynamic_triangles.h"
@@ -58,6 +59,24 @@ void writeMesh(const std::string& path, const std::vector<hypermesh::Tet>& tets,
   Bounds4f bounds = vertices.empty() ? Bounds4f{{0, 0, 0, 0}, {0, 0, 0, 1}} : Bounds4f{};
   for (const Vec4f& vertex : vertices) bounds.add(vertex);
   must(writer.addPage(vertices, {}, tets, bounds));
+  must(writer.close(kProvenance));
+}
+
+// The first tetrahedron of writeMesh with the columns `normal`, `velocity` and `heat`, far from the world's origin.
+void writeColumns(const std::string& path) {
+  const std::vector<Vec4f> vertices{{0, 0, 0, 0.25F}, {2, 0, 0, 0.5F}, {0, 2, 0, 0.75F}, {1, 1, 1, 0}};
+  hypermesh::MeshHeader header{};
+  header.domain = {{-4, -4, -4, 0}, {4, 4, 4, 1}};
+  header.isovalue = std::numeric_limits<double>::quiet_NaN();
+  header.index_to_world = {{500000, 52000000, 0}, AffineMap{}.axes};
+  const std::vector<double> times{0, 2};
+  const std::vector<hypermesh::Writer::Column> columns{{"normal", 3}, {"velocity", 3}, {"heat", 1}};
+  auto writer = must(hypermesh::Writer::create(path, header, times, columns, paged::Codec::kRaw, true));
+  Bounds4f bounds;
+  for (const Vec4f& vertex : vertices) bounds.add(vertex);
+  const std::vector<float> normals{0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 1}, velocity(12, 2.5F), heat{1, 2, 3, 4};
+  const std::vector<std::span<const float>> values{normals, velocity, heat};
+  must(writer.addPage(vertices, {}, std::vector<hypermesh::Tet>{{0, 1, 2, 3}}, bounds, values));
   must(writer.close(kProvenance));
 }
 
@@ -120,6 +139,7 @@ int main(int argc, char** argv) {
   writeSurface(in("surface.t4q"));
   // Faces opposite 3 and 4 are the same triangle, wound oppositely: sound.
   writeMesh(in("mesh.t4h"), {{0, 1, 2, 3}, {1, 0, 2, 4}}, 0);
+  writeColumns(in("columns.t4h"));
   writeMesh(in("misoriented.t4h"), {{0, 1, 2, 3}, {0, 1, 2, 4}}, 0);
   // On a grid the mesh may end on the walls of the domain only; this one ends inside.
   writeMesh(in("open.t4h"), {{0, 1, 2, 3}, {1, 0, 2, 4}}, hypermesh::kOnGrid);

@@ -27,7 +27,114 @@ def check_slices(result):
         assert "element face 0" not in header and "property float nx" in header, header
 
 
+def ply_values(path):
+    """{property: values} of the first element."""
+    header, data = path.read_bytes().split(b"end_header\n", 1)
+    words = [line.split() for line in header.decode().splitlines()]
+    count = next(int(w[2]) for w in words if w[:2] == ["element", "vertex"])
+    properties = [w for w in words if w[0] == "property" and w[1] != "list"]
+    layout = "<" + "".join({"float": "f", "double": "d"}[w[1]] for w in properties)
+    rows = [struct.unpack_from(layout, data, k * struct.calcsize(layout)) for k in range(count)]
+    return {w[2]: [row[i] for row in rows] for i, w in enumerate(properties)}
+
+
+def check_columns(result):
+    every = ply_values(result.directory / "all.ply")
+    assert set(every) == {"x", "y", "z", "nx", "ny", "nz", "velocity_x", "velocity_y", "velocity_z", "heat"}, set(every)
+    assert all(abs(n[0] ** 2 + n[1] ** 2 + n[2] ** 2 - 1) < 1e-6 for n in zip(every["nx"], every["ny"], every["nz"]))
+    assert set(every["velocity_x"]) == {2.5} and all(1 <= h <= 4 for h in every["heat"])
+    heat = ply_values(result.directory / "heat.ply")
+    assert set(heat) == {"x", "y", "z", "heat"} and heat["heat"] == every["heat"], set(heat)
+    both = ply_values(result.directory / "both.ply")
+    assert "normal_x" in both and both["nx"] != every["nx"], "normals of the slice, and the column beside them"
+
+
+def check_velocity(result):
+    values = ply_values(result.directory / "v.ply")
+    assert "velocity_x" in values and "nx" in values
+    for k in range(0, len(values["x"]), 97):  # along the normal, within what averages over facets allow
+        v, n = ([values[name + c][k] for c in "xyz"] for name in ("velocity_", "n"))
+        speed = sum(x * x for x in v) ** 0.5
+        along = abs(sum(x * y for x, y in zip(v, n)))
+        assert along <= speed * (1 + 1e-5), (v, n)
+    assert any(abs(x) > 0.01 for x in values["velocity_x"]), "a dam break that stands still"
+
+
 CASES = [
+    {
+        "name": "every format of slices is written, the same bytes each time",
+        "shell": DAM + "for s in ply vtp off obj stl glb; do tet4d-convert dam.t4h --at 0.17 -q -o a.$s; "
+        "tet4d-convert dam.t4h --at 0.17 -q -o b.$s; cmp a.$s b.$s; test -s a.$s; done",
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "columns: all, one, and normals of the slice beside them",
+        "shell": "tet4d-convert {files}/columns.t4h --at 0.8 --columns all -q -o all.ply; "
+        "tet4d-convert {files}/columns.t4h --at 0.8 --columns heat -q -o heat.ply; "
+        "tet4d-convert {files}/columns.t4h --at 0.8 --columns normal --normals -q -o both.ply; "
+        "tet4d-convert {files}/columns.t4h --at 0.8 --velocity --normals-from column -q -o v.vtp; "
+        "grep -q 'Normals=\"Normals\" Vectors=\"velocity\"' v.vtp",
+        "check": check_columns,
+    },
+    {
+        "name": "velocity of a mesh without such a column",
+        "shell": DAM + "tet4d-convert dam.t4h --at 0.17 --velocity --normals -q -o v.ply",
+        "check": check_velocity,
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "a column that is not there lists those that are",
+        "shell": "tet4d-convert {files}/columns.t4h --at 0.8 --columns heat,cold -o x.ply",
+        "exit": 2,
+        "stderr": ["columns.t4h", "--columns", '"cold"', "it has normal, velocity, heat"],
+        "absent": ["x.ply"],
+    },
+    {
+        "name": "a column named twice",
+        "shell": "tet4d-convert {files}/columns.t4h --at 0.8 --columns heat,heat -o x.ply",
+        "exit": 2,
+        "stderr": ["--columns", '"heat" is named twice'],
+    },
+    {
+        "name": "a velocity asked for as a column that is not there",
+        "shell": "tet4d-convert {files}/mesh.t4h --at 0.8 --columns velocity -o x.ply",
+        "exit": 2,
+        "stderr": ["it has no columns", "--velocity computes it"],
+    },
+    {
+        "name": "normals from a column that is not there",
+        "shell": "tet4d-convert {files}/mesh.t4h --at 0.8 --normals-from column -o x.ply",
+        "exit": 2,
+        "stderr": ["--normals-from", 'no column "normal"'],
+    },
+    {
+        "name": "formats refuse what they cannot hold",
+        "shell": "for s in off obj stl; do code=0; tet4d-convert {files}/columns.t4h --at 0.8 --columns heat -o x.$s || code=$?; "
+        "test $code = 2; test ! -e x.$s; done; tet4d-convert {files}/columns.t4h --at 0.8 --normals -o x.stl",
+        "exit": 2,
+        "stderr": [".off holds no columns", ".obj holds no columns", ".stl holds no columns", ".stl holds no normals at vertices"],
+        "absent": ["x.stl"],
+    },
+    {
+        "name": "float32 formats far from the origin say what is lost",
+        "shell": "tet4d-convert {files}/columns.t4h --at 0.8 -q -o far.stl --stats s.json; "
+        "tet4d-convert {files}/columns.t4h --at 0.8 -q -o far.glb --stats g.json; "
+        "tet4d-convert {files}/columns.t4h --at 0.8 -q -o far.obj --stats o.json",
+        "stderr": ["far.stl", "float32", "off by up to", "world units"],
+        "not_stderr": ["far.obj"],
+        "json_file": {"s.json": {"error.position_world": {"at_least": 0.01}},
+                      "g.json": {"error.position_world": {"about": 0, "within": 1e-6}},
+                      "o.json": {"error.position_world": 0}},
+    },
+    {
+        "name": "what only slices have is refused without a time",
+        "shell": "for o in --normals --velocity '--columns all' '--normals-from column'; do code=0; "
+        "tet4d-convert {files}/columns.t4h $o -o x.vtu || code=$?; test $code = 2; done; "
+        "tet4d-convert {files}/grid.t4g --velocity -o x.nrrd",
+        "exit": 2,
+        "stderr": ["--normals is for slices", "--velocity is for slices", "--columns is for slices",
+                   "--normals-from is for slices", "--velocity is for slices of a hypermesh"],
+    },
     {
         "name": "one slice as PLY, at a world time and at a frame",
         "shell": DAM + "tet4d-convert dam.t4h --at 0.17 -q -o a.ply; tet4d-convert dam.t4h --at 0.5f -q -o b.ply; cmp a.ply b.ply",
@@ -76,10 +183,10 @@ CASES = [
     },
     {
         "name": "a format it does not write lists those it does",
-        "shell": DAM + "tet4d-convert dam.t4h --at 0.17 -o x.obj",
+        "shell": DAM + "tet4d-convert dam.t4h --at 0.17 -o x.3ds",
         "exit": 2,
-        "stderr": ["x.obj", ".ply"],
-        "absent": ["x.obj"],
+        "stderr": ["x.3ds", ".ply"],
+        "absent": ["x.3ds"],
         "needs": ["tet4d-mc"],
     },
     {

@@ -173,13 +173,15 @@ std::vector<bool> randomCells(std::uint32_t n, double odds, std::uint32_t seed) 
 }
 
 void writeSlabs(const std::string& path, const SpaceTime& mesh, std::uint32_t frames, const AffineMap& map,
-                std::span<const double> times) {
+                std::span<const double> times, const std::vector<VertexColumn>& columns) {
   hypermesh::MeshHeader header{};
   header.flags = hypermesh::kOnGrid;
   header.index_to_world = map;
   header.isovalue = 0.5;
   for (const Vec4f& vertex : mesh.vertices) header.domain.add(vertex);
-  auto writer = unwrap(hypermesh::Writer::create(path, header, times, {}, paged::Codec::kRaw, true));
+  std::vector<hypermesh::Writer::Column> declared;
+  for (const VertexColumn& column : columns) declared.push_back({column.name, column.components});
+  auto writer = unwrap(hypermesh::Writer::create(path, header, times, declared, paged::Codec::kRaw, true));
   const auto begins = [&](std::uint32_t time) {  // first vertex at or after a time
     const auto it = std::find_if(mesh.vertices.begin(), mesh.vertices.end(),
                                  [&](const Vec4f& v) { return v.t >= static_cast<float>(time); });
@@ -204,7 +206,12 @@ void writeSlabs(const std::string& path, const SpaceTime& mesh, std::uint32_t fr
     bounds.max.t = static_cast<float>(k + 1);
     std::vector<hypermesh::Run> runs;
     if (!is_last) runs.push_back({next, end - next});
-    unwrap(writer.addPage(std::span(mesh.vertices).subspan(first, next - first), runs, tets, bounds));
+    std::vector<std::span<const float>> own;
+    for (const VertexColumn& column : columns) {
+      const std::size_t n = column.components;
+      own.push_back(std::span(column.values).subspan(first * n, (next - first) * n));
+    }
+    unwrap(writer.addPage(std::span(mesh.vertices).subspan(first, next - first), runs, tets, bounds, own));
   }
   unwrap(writer.close("{}"));
 }

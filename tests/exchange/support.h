@@ -56,9 +56,16 @@ SpaceTime cubesBoundary(std::uint32_t n, const std::vector<bool>& filled);
 // Random flags, each true with the odds.
 std::vector<bool> randomCells(std::uint32_t n, double odds, std::uint32_t seed);
 
+// A column of all vertices of a mesh.
+struct VertexColumn {
+  std::string name;
+  std::uint32_t components;
+  std::vector<float> values;
+};
+
 // Writes a mesh whose vertices are ordered by integer time as a file of unit time slabs, as marching hypercubes does:
 // page k owns the vertices at time k (the last page those at its end too), with one run of foreign vertices.
 void writeSlabs(const std::string& path, const SpaceTime& mesh, std::uint32_t frames, const AffineMap& map,
-                std::span<const double> times);
+                std::span<const double> times, const std::vector<VertexColumn>& columns = {});
 
 }  // namespace tet4d::testing

@@ -111,7 +111,8 @@ TEST(WritePly, WorldPointsTrianglesAndNormals) {
   for (const bool normals : {false, true}) {
     for (const bool as_double : {false, true}) {
       const std::string path = scratch.path("a.ply");
-      writePly(path, worldMesh(slice, sample.file.header().index_to_world, normals), as_double, true);
+      writePly(path, worldMesh(slice, sample.file.header().index_to_world, normals),
+               {.as_double = as_double, .force = true});
       const PlyMesh ply = readPly(readFile(path));
       EXPECT_EQ(ply.has_doubles, as_double);
       ASSERT_EQ(ply.points.size(), slice.positions.size());
@@ -124,7 +125,7 @@ TEST(WritePly, WorldPointsTrianglesAndNormals) {
       for (const auto& n : ply.normals) ASSERT_NEAR(std::hypot(n[0], n[1], n[2]), 1, 1e-5);
     }
   }
-  const auto again = [&] { writePly(scratch.path("a.ply"), WorldMesh{}, false, false); };
+  const auto again = [&] { writePly(scratch.path("a.ply"), WorldMesh{}, {}); };
   EXPECT_EQ(faultOf(again).code, FaultCode::kIo) << "an existing file is kept";
 }
 
@@ -132,7 +133,7 @@ TEST(WriteVtp, SameMeshAsPlyWithItsTime) {
   const Scratch scratch;
   const Sample sample = sampleOf(scratch);
   const WorldMesh mesh = worldMesh(sliceHypermesh(sample.file, 0.5), {}, true);
-  writeVtp(scratch.path("a.vtp"), mesh, 0.1, false, false);
+  writeVtp(scratch.path("a.vtp"), mesh, {.time = 0.1});
   const std::string text = readFile(scratch.path("a.vtp"));
   EXPECT_NE(text.find("Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">0.1</DataArray>"), std::string::npos);
   VtkFile vtp = readVtk(text);
@@ -176,7 +177,7 @@ TEST(WriteSlices, AFarOriginIsWrittenInDouble) {
   const Sample sample = sampleOf(scratch, map);
   const SliceMesh slice = sliceHypermesh(sample.file, 0.3);
   const WorldMesh mesh = worldMesh(slice, map, true);
-  writePly(scratch.path("a.ply"), mesh, needsDouble(map, sample.file.header().domain), false);
+  writePly(scratch.path("a.ply"), mesh, {.as_double = needsDouble(map, sample.file.header().domain)});
   const PlyMesh ply = readPly(readFile(scratch.path("a.ply")));
   for (std::size_t i = 0; i < ply.points.size(); ++i)
     ASSERT_EQ(ply.points[i][1] - 5200000, double{slice.positions[i].y});
@@ -185,9 +186,9 @@ TEST(WriteSlices, AFarOriginIsWrittenInDouble) {
 
 TEST(WriteSlices, AnEmptySliceIsAFile) {
   const Scratch scratch;
-  writePly(scratch.path("e.ply"), WorldMesh{}, false, false);
+  writePly(scratch.path("e.ply"), WorldMesh{}, {});
   EXPECT_TRUE(readPly(readFile(scratch.path("e.ply"))).points.empty());
-  writeVtp(scratch.path("e.vtp"), WorldMesh{}, 0, false, false);
+  writeVtp(scratch.path("e.vtp"), WorldMesh{}, {});
   EXPECT_EQ(readVtk(readFile(scratch.path("e.vtp"))).piece["NumberOfPolys"], 0u);
 }
 

@@ -21,9 +21,10 @@ void convertFrames(cli::Session& session, const Options& options) {
   const std::string& output = session.options().output;
   const std::string suffix = suffixOf(output);
   if (suffix != ".t4g" && suffix != ".nrrd") failUsage("frames cannot be written as \"" + output + "\"");
-  if (!options.at.empty() || !options.times.empty() || options.normals) {
-    failUsage("--at, --times and --normals are for slices of a hypermesh",
-              "make one first: tet4d-mc FRAMES --iso V -o X.t4h");
+  if (options.wantsSlices() || !options.sliceOption().empty()) {
+    failUsage(
+        (options.wantsSlices() ? "--at and --times are" : options.sliceOption() + " is") + " for slices of a hypermesh",
+        "make one first: tet4d-mc FRAMES --iso V -o X.t4h");
   }
   const auto frames = exchange::openFrames(options.inputs, {options.allow_gaps, options.frame_times, {}});
   if (suffix == ".t4g") {

@@ -14,17 +14,26 @@ struct Options {
   // Slices.
   std::string at, times;
   bool normals = false;
+  std::string normals_from = "slice", columns = "none";
+  bool velocity = false;
   // Frames.
   std::string codec = "raw";
   bool allow_gaps = false;
   std::vector<double> frame_times;
 
   bool wantsSlices() const { return !at.empty() || !times.empty(); }
+  // The first option given that only slices have; empty if there is none.
+  std::string sliceOption() const {
+    if (normals) return "--normals";
+    if (normals_from != "slice") return "--normals-from";
+    if (columns != "none") return "--columns";
+    return velocity ? "--velocity" : "";
+  }
 };
 
 inline constexpr const char* kPossible =
-    "possible are: .t4h to .vtu, .hyper; .t4h with --at to .ply, .vtp; .t4h with --times to a pattern such as %04d.ply "
-    "or to .pvd; frames (.nrrd, .nhdr, .t4g, a directory, a pattern) to .t4g, .nrrd";
+    "possible are: .t4h to .vtu, .hyper; .t4h with --at to .ply, .vtp, .off, .obj, .stl, .glb; .t4h with --times "
+    "to a pattern such as %04d.ply or to .pvd; frames (.nrrd, .nhdr, .t4g, a directory, a pattern) to .t4g, .nrrd";
 
 [[noreturn]] inline void failUsage(const std::string& what, const std::string& remedy = kPossible) {
   throw Error(FaultCode::kUsage, "", "", what, remedy);

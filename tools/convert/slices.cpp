@@ -1,7 +1,10 @@
 #include "tools/convert/slices.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,35 +17,149 @@
 namespace tet4d::convert {
 namespace {
 
+// What a slice carries, as the options and the mesh's columns say.
+struct Contents {
+  exchange::SliceWants wants;
+  bool slice_normals = false;         // area-weighted, of the slice
+  std::optional<std::size_t> normal;  // among wants.columns: the one that becomes the file's normals
+};
+
+std::string columnList(const hypermesh::File& mesh) {
+  std::string list;
+  for (const auto& column : mesh.columns()) list += (list.empty() ? "" : ", ") + exchange::columnName(column);
+  return list.empty() ? "it has no columns" : "it has " + list;
+}
+
+std::optional<std::size_t> findColumn(const hypermesh::File& mesh, const std::string& name) {
+  for (std::size_t c = 0; c < mesh.columns().size(); ++c) {
+    if (exchange::columnName(mesh.columns()[c]) == name) return c;
+  }
+  return std::nullopt;
+}
+
+// The column of three components with a meaning of its own, if the mesh has it.
+std::optional<std::size_t> findVectors(const hypermesh::File& mesh, const char* name) {
+  const auto found = findColumn(mesh, name);
+  return found && mesh.columns()[*found].components == 3 ? found : std::nullopt;
+}
+
+// The rank of column c among those wanted; wants it if it is not.
+std::size_t rankOf(std::vector<std::size_t>& columns, std::size_t c) {
+  const auto found = std::find(columns.begin(), columns.end(), c);
+  if (found != columns.end()) return static_cast<std::size_t>(found - columns.begin());
+  columns.push_back(c);
+  return columns.size() - 1;
+}
+
+std::vector<std::size_t> namedColumns(const hypermesh::File& mesh, const std::string& list) {
+  std::vector<std::size_t> columns;
+  if (list == "none") return columns;
+  if (list == "all") {
+    for (std::size_t c = 0; c < mesh.columns().size(); ++c) columns.push_back(c);
+    return columns;
+  }
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string name = list.substr(begin, end - begin);
+    begin = end + 1;
+    const auto found = findColumn(mesh, name);
+    if (!found) {
+      throw Error(FaultCode::kUsage, mesh.reader().path(), "--columns",
+                  "there is no column \"" + name + "\"; " + columnList(mesh),
+                  name == exchange::kVelocity ? "--velocity computes it" : "name one of those, all or none");
+    }
+    if (std::count(columns.begin(), columns.end(), *found) != 0) {
+      throw Error(FaultCode::kUsage, "", "--columns", "\"" + name + "\" is named twice", "name it once");
+    }
+    columns.push_back(*found);
+  }
+  return columns;
+}
+
+Contents contentsOf(const hypermesh::File& mesh, const Options& options) {
+  Contents contents;
+  contents.wants.columns = namedColumns(mesh, options.columns);
+  if (options.velocity) {
+    if (const auto column = findVectors(mesh, exchange::kVelocity)) {
+      rankOf(contents.wants.columns, *column);
+    } else {
+      contents.wants.velocity = true;
+    }
+  }
+  const auto normal = findVectors(mesh, exchange::kNormal);
+  if (options.normals_from == "column") {
+    if (!normal) {
+      throw Error(FaultCode::kUsage, mesh.reader().path(), "--normals-from",
+                  "there is no column \"normal\" of three components; " + columnList(mesh),
+                  "make the hypermesh with --normals, or leave this out: --normals takes those of the slice");
+    }
+    contents.normal = rankOf(contents.wants.columns, *normal);
+  } else if (options.normals) {
+    contents.slice_normals = true;
+  } else if (normal && std::count(contents.wants.columns.begin(), contents.wants.columns.end(), *normal) != 0) {
+    contents.normal = rankOf(contents.wants.columns, *normal);  // named as a column: it is what the file's normals are
+  }
+  return contents;
+}
+
+// Refuses, before anything is written, what the output's format does not hold.
+void checkFormat(const std::string& name, const Contents& contents) {
+  const exchange::MeshFormat& format = *exchange::meshFormatOf(name);
+  const std::string suffix(format.suffix);
+  if (!format.normals && (contents.slice_normals || contents.normal)) {
+    failUsage(suffix + " holds no normals at vertices", "leave the normals out, or write .ply, .vtp, .off, .obj, .glb");
+  }
+  const bool any = contents.wants.velocity || contents.wants.columns.size() > (contents.normal ? 1 : 0);
+  if (!format.columns && any) failUsage(suffix + " holds no columns", "leave them out, or write .ply, .vtp, .glb");
+}
+
 // Writes slices one after the other and counts what is in them.
 class SliceWriter {
  public:
-  SliceWriter(cli::Session& session, const hypermesh::File& mesh, bool normals)
-      : session_(session),
-        mesh_(mesh),
-        normals_(normals),
-        as_double_(exchange::needsDouble(mesh.header().index_to_world, mesh.header().domain)) {}
+  SliceWriter(cli::Session& session, const hypermesh::File& mesh, Contents contents)
+      : session_(session), mesh_(mesh), contents_(std::move(contents)) {
+    file_.as_double = exchange::needsDouble(mesh.header().index_to_world, mesh.header().domain);
+    file_.origin = mesh.header().index_to_world.origin;
+    file_.force = session.options().force;
+  }
 
   void write(const std::string& path, const SliceTime& at) {
-    const SliceMesh slice = exchange::sliceHypermesh(mesh_, at.frame);
-    const auto world = exchange::worldMesh(slice, mesh_.header().index_to_world, normals_);
+    exchange::Slice slice = exchange::sliceHypermesh(mesh_, at.frame, contents_.wants);
+    auto world = exchange::worldMesh(slice.mesh, mesh_.header().index_to_world, contents_.slice_normals);
+    world.columns = std::move(slice.columns);
+    if (contents_.normal) exchange::takeNormals(world, *contents_.normal);
     vertices_ += world.points.size();
     triangles_ += world.triangles.size();
-    const bool force = session_.options().force;
-    if (suffixOf(path) == ".ply") {
-      exchange::writePly(path, world, as_double_, force);
-    } else {
-      exchange::writeVtp(path, world, at.time, as_double_, force);
-    }
+    file_.time = at.time;
+    const exchange::WriteLoss loss = exchange::writeSlice(path, world, file_);
+    if (loss.position_world > loss_world_) loss_world_ = loss.position_world, worst_ = path;
   }
-  std::uint64_t vertices() const { return vertices_; }
-  std::uint64_t triangles() const { return triangles_; }
+
+  // Tells once, after the last slice, what was lost.
+  void report(std::size_t slices) {
+    session_.stats().count("vertices", vertices_);
+    session_.stats().count("triangles", triangles_);
+    session_.stats().count("slices", slices);
+    session_.stats().error("position_world", loss_world_);
+    session_.note(std::to_string(slices) + (slices == 1 ? " slice, " : " slices, ") + std::to_string(vertices_) +
+                  " vertices, " + std::to_string(triangles_) + " triangles");
+    if (!file_.as_double || exchange::meshFormatOf(worst_) == nullptr) return;
+    const exchange::MeshFormat& format = *exchange::meshFormatOf(worst_);
+    if (format.doubles || format.suffix == ".glb") return;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", loss_world_);
+    session_.warn(worst_ + ": its format has float32 only, and the origin is far away: positions are off by up to " +
+                  text + " world units; .ply, .vtp, .off, .obj and .glb keep them");
+  }
 
  private:
   cli::Session& session_;
   const hypermesh::File& mesh_;
-  bool normals_, as_double_;
+  Contents contents_;
+  exchange::MeshFileOptions file_;
   std::uint64_t vertices_ = 0, triangles_ = 0;
+  double loss_world_ = 0;
+  std::string worst_;  // the file with that loss
 };
 
 // The name of slice k: from a pattern, or beside a .pvd.
@@ -55,14 +172,11 @@ std::string sliceName(const std::string& output, std::size_t k) {
 }
 
 void checkSliceOutput(const Options& options, const std::string& output) {
-  const std::string suffix = suffixOf(output);
   if (!options.at.empty() && !options.times.empty())
     failUsage("--at and --times are both given", "leave one of them out");
-  if (!options.at.empty() && suffix != ".ply" && suffix != ".vtp") {
-    failUsage("a slice (--at) cannot be written as \"" + output + "\"");
-  }
-  if (options.times.empty() || suffix == ".pvd") return;
-  const bool suffix_fits = suffix == ".ply" || suffix == ".vtp";
+  const bool suffix_fits = exchange::meshFormatOf(output) != nullptr;
+  if (!options.at.empty() && !suffix_fits) failUsage("a slice (--at) cannot be written as \"" + output + "\"");
+  if (options.times.empty() || suffixOf(output) == ".pvd") return;
   if (!suffix_fits || !exchange::NumberPattern::parse(output)) {
     failUsage("slices (--times) cannot be written as \"" + output + "\"");
   }
@@ -73,7 +187,9 @@ void checkSliceOutput(const Options& options, const std::string& output) {
 void writeSlices(cli::Session& session, const hypermesh::File& mesh, const Options& options) {
   const std::string& output = session.options().output;
   checkSliceOutput(options, output);
-  SliceWriter writer(session, mesh, options.normals);
+  Contents contents = contentsOf(mesh, options);
+  checkFormat(suffixOf(output) == ".pvd" ? "x.vtp" : output, contents);
+  SliceWriter writer(session, mesh, std::move(contents));
   std::vector<SliceTime> at;
   if (!options.at.empty()) {
     at.push_back(unwrap(parseTime(options.at, mesh.times())));
@@ -92,11 +208,7 @@ void writeSlices(cli::Session& session, const hypermesh::File& mesh, const Optio
     session.progress().step(k + 1);
   }
   if (suffixOf(output) == ".pvd") exchange::writePvd(output, steps, session.options().force);
-  session.stats().count("vertices", writer.vertices());
-  session.stats().count("triangles", writer.triangles());
-  session.stats().count("slices", at.size());
-  session.note(std::to_string(at.size()) + (at.size() == 1 ? " slice, " : " slices, ") +
-               std::to_string(writer.vertices()) + " vertices, " + std::to_string(writer.triangles()) + " triangles");
+  writer.report(at.size());
 }
 
 }  // namespace tet4d::convert
