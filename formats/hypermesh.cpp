@@ -90,6 +90,11 @@ const char* checkRuns(const PageView& page, std::uint64_t total_vertices) {
   return foreign == page.header->foreign ? nullptr : "its runs do not sum to its foreign vertices";
 }
 
+// Memory that a loaded page takes; a raw one is mapped.
+std::uint64_t decodedBytes(const paged::PageEntry& entry) {
+  return entry.codec == static_cast<std::uint32_t>(paged::Codec::kRaw) ? 0 : entry.raw_bytes;
+}
+
 // A part of a run of foreign vertices that one page owns.
 struct OwnedPart {
   std::size_t owner;           // geometry page
@@ -212,6 +217,9 @@ Result<File> File::open(const std::string& path) {
   if (!pages.ok()) return pages.fault();
   file.pages_ = pages.value();
   if (Status s = checkPages(reader, *file.header_, file.pages_.entries(), file.columns_); !s.ok()) return s.fault();
+  for (std::size_t k = 0; k < file.geometryPages(); ++k) {
+    file.largest_decoded_ = std::max(file.largest_decoded_, decodedBytes(file.geometryEntry(k)));
+  }
   return file;
 }
 
@@ -244,6 +252,12 @@ Result<GatheredPage> File::gather(std::size_t k) const {
     page.positions.insert(page.positions.end(), positions.begin(), positions.end());
   }
   return page;
+}
+
+std::uint64_t File::gatherBytes(std::size_t k) const {
+  const auto& counts = geometryEntry(k).counts;
+  return decodedBytes(geometryEntry(k)) + (counts[3] == 0 ? 0 : largest_decoded_) +
+         (counts[1] + counts[3]) * sizeof(Vec4f);
 }
 
 Result<std::vector<float>> File::gatherColumn(std::size_t c, std::size_t k, const PageView& page) const {

@@ -119,6 +119,9 @@ class File {
   Result<std::uint64_t> contentDigest() const;
   // Loads and proves geometry page k and gathers its foreign vertices from the pages that own them. O(page + owners).
   Result<GatheredPage> gather(std::size_t k) const;
+  // What gather(k) may hold at once: the page and an owner's decoded, and the positions. Bytes, without reading the
+  // page.
+  std::uint64_t gatherBytes(std::size_t k) const;
   // Column c for every local index of geometry page k, whose view is `page`: components floats each, own vertices
   // first, foreign ones from the columns of the pages that own them. O(page + owners), memory of one column page beside
   // it.
@@ -137,6 +140,7 @@ class File {
   std::span<const ColumnEntry> columns_;
   std::span<const PartEntry> parts_;
   paged::Pages pages_;
+  std::uint64_t largest_decoded_ = 0;  // of the geometry pages: bytes that one takes when it is loaded
 };
 
 // Streams a hypermesh page by page, in time order. Vertices and counts of the header are filled in at close.

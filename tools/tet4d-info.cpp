@@ -29,7 +29,7 @@ void addFaults(ordered_json& out, const std::vector<std::string>& faults) {
 
 // The mesh as a manifold: every inner triangle in exactly two tetrahedra, wound oppositely in them.
 void checkFaces(const hypermesh::File& file, ordered_json& out, cli::Session& session) {
-  const topology::HypermeshCheck check = topology::checkHypermesh(file, session.progress());
+  const topology::HypermeshCheck check = topology::checkHypermesh(file, session.progress(), &session.memory());
   out["faces"] = {{"inner", check.inner_faces},
                   {"wall", check.wall_faces},
                   {"inner_boundary", check.inner_boundary_faces},
@@ -42,7 +42,7 @@ void checkFaces(const hypermesh::File& file, ordered_json& out, cli::Session& se
 }
 
 void checkLinks(const hypermesh::File& file, ordered_json& out, cli::Session& session) {
-  const topology::LinkCheck check = topology::checkLinks(file, session.memory().available(), session.progress());
+  const topology::LinkCheck check = topology::checkLinks(file, session.memory(), session.progress());
   out["links"] = {{"sphere_vertices", check.sphere_links},    {"disc_vertices", check.disc_links},
                   {"faulty_vertices", check.faulty_vertices}, {"cycle_edges", check.cycle_edges},
                   {"path_edges", check.path_edges},           {"faulty_edges", check.faulty_edges},
@@ -56,9 +56,11 @@ template <class File>
 std::uint64_t largestPage(const File& file) {
   std::uint64_t most = 0;
   for (const paged::PageEntry& entry : file.pages().entries()) {
-    const std::uint64_t vertices =
-        std::is_same_v<File, hypermesh::File> && entry.kind == 0 ? entry.counts[1] + entry.counts[3] : 0;
-    most = std::max(most, entry.raw_bytes + vertices * sizeof(Vec4f));
+    const bool decoded = entry.codec != static_cast<std::uint32_t>(paged::Codec::kRaw);
+    most = std::max(most, decoded ? entry.raw_bytes : 0);
+  }
+  if constexpr (std::is_same_v<File, hypermesh::File>) {
+    for (std::size_t k = 0; k < file.geometryPages(); ++k) most = std::max(most, file.gatherBytes(k));
   }
   return most;
 }
@@ -66,9 +68,13 @@ std::uint64_t largestPage(const File& file) {
 // Structure first; what stands on a damaged file is not worth checking.
 void validate(const info::AnyFile& any, const Options& options, ordered_json& out, cli::Session& session) {
   session.progress().phase("verify", 1);
-  const auto held = session.memory().reserve(std::visit([](const auto& file) { return largestPage(file); }, any),
-                                             "the largest page, decoded and with its neighbours' vertices,");
-  const Status status = std::visit([](const auto& file) { return file.verify(); }, any);
+  const Status status = std::visit(
+      [&](const auto& file) {
+        const auto held =
+            session.memory().reserve(largestPage(file), "the largest page, decoded and with its neighbours' vertices,");
+        return file.verify();
+      },
+      any);
   session.progress().step(1);
   if (!status.ok()) {
     if (status.fault().code != FaultCode::kBadInput) throw Error(status.fault());
@@ -130,8 +136,7 @@ int main(int argc, char** argv) {
       .flag("--validate",
             "prove structure, checksums, indices and, of a hypermesh, faces and orientation; exit 5 on faults",
             &options.validate)
-      .flag("--links", "validate, and check that every vertex and edge link is that of a manifold (in core)",
-            &options.links)
+      .flag("--links", "validate, and check that every vertex and edge link is that of a manifold", &options.links)
       .common({cli::kMemory, cli::kStats})
       .note("Exit: 0 sound, 1 failure, 2 usage, 3 bad input, 4 out of memory or disk, 5 faults found.");
   return cli::run(argc, argv, command, [&](cli::Session& session) { return body(options, session); });

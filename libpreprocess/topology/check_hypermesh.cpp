@@ -73,7 +73,8 @@ bool hasVolume(const std::array<Vec4f, 4>& v) {
 
 class Checker {
  public:
-  Checker(const hypermesh::File& file, outofcore::Progress& progress) : file_(file), reach_(file, progress) {
+  Checker(const hypermesh::File& file, outofcore::Progress& progress, outofcore::MemoryBudget* memory)
+      : file_(file), memory_(memory), reach_(file, progress, memory) {
     progress.phase("faces", file.geometryPages());
     for (std::size_t k = 0; k < file.geometryPages(); ++k) {
       checkPage(k);
@@ -90,6 +91,13 @@ class Checker {
  private:
   void checkPage(std::size_t k) {
     page_ = k;
+    outofcore::MemoryBudget::Reservation held;
+    if (memory_ != nullptr) {
+      const auto& counts = file_.geometryEntry(k).counts;
+      // Number, bucket, walls and marks of a vertex; four faces of a tetrahedron.
+      held = memory_->reserve(file_.gatherBytes(k) + (counts[1] + counts[3]) * 20 + counts[2] * 4 * sizeof(LocalFace),
+                              "a page and the faces of its tetrahedra");
+    }
     const hypermesh::GatheredPage page = unwrap(file_.gather(k));
     numberLocals(page.view);
     walls_.resize(globals_.size());
@@ -194,6 +202,12 @@ class Checker {
 
   // Merges the page's shared faces with those carried from earlier pages; carries on what a later page can still meet.
   void matchAcrossPages() {
+    if (memory_ != nullptr) {
+      // Both fronts and their merger.
+      front_ = {};
+      front_ = memory_->reserve(2 * (carried_.size() + shared_faces_.size()) * sizeof(Face),
+                                "the open front of the face test after page " + std::to_string(page_));
+    }
     const auto before = [](const Face& a, const Face& b) { return a.vertices < b.vertices; };
     std::sort(shared_faces_.begin(), shared_faces_.end(), before);
     std::vector<Face> merged;
@@ -282,6 +296,7 @@ class Checker {
   }
 
   const hypermesh::File& file_;
+  outofcore::MemoryBudget* memory_;  // or null
   VertexReach reach_;
   HypermeshCheck check_;
   std::uint64_t page_ = 0;
@@ -293,13 +308,15 @@ class Checker {
   std::vector<LocalFace> local_faces_;
   // Across pages:
   std::vector<Face> shared_faces_, carried_;
+  outofcore::MemoryBudget::Reservation front_;
   std::map<std::uint64_t, std::vector<bool>> marks_;  // used vertices, by owner
 };
 
 }  // namespace
 
-HypermeshCheck checkHypermesh(const hypermesh::File& file, outofcore::Progress& progress) {
-  return Checker(file, progress).result();
+HypermeshCheck checkHypermesh(const hypermesh::File& file, outofcore::Progress& progress,
+                              outofcore::MemoryBudget* memory) {
+  return Checker(file, progress, memory).result();
 }
 
 }  // namespace tet4d::topology

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/hypermesh.h"
+#include "libpreprocess/outofcore/memory_budget.h"
 #include "libpreprocess/outofcore/progress.h"
 
 namespace tet4d::topology {
@@ -35,7 +36,9 @@ struct HypermeshCheck {
 
 // Reads the file twice, page by page in order (phases "reach" and "faces"). Memory: one gathered page, 64 bytes a
 // tetrahedron of it, and the faces that a later page can still meet. O(file). Throws Error where a page is damaged
-// (checksum, index out of range) or on interrupt; faults of the mesh are returned, not thrown.
-HypermeshCheck checkHypermesh(const hypermesh::File& file, outofcore::Progress& progress);
+// (checksum, index out of range) or on interrupt; faults of the mesh are returned, not thrown. If `memory` is given,
+// all of that is reserved from it: Error{kOutOfMemory} where a page or the front does not fit.
+HypermeshCheck checkHypermesh(const hypermesh::File& file, outofcore::Progress& progress,
+                              outofcore::MemoryBudget* memory = nullptr);
 
 }  // namespace tet4d::topology

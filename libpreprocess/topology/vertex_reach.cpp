@@ -7,7 +7,10 @@
 
 namespace tet4d::topology {
 
-VertexReach::VertexReach(const hypermesh::File& file, outofcore::Progress& progress) {
+VertexReach::VertexReach(const hypermesh::File& file, outofcore::Progress& progress, outofcore::MemoryBudget* memory) {
+  // Two events a range, at worst two ranges of reach, and as much again while the vectors grow.
+  constexpr std::uint64_t kRangeBytes = 2 * (2 * sizeof(Event) + sizeof(Reach) + sizeof(std::uint64_t));
+  std::uint64_t ranges = 0;
   const std::size_t pages = file.geometryPages();
   const std::size_t stride = 1 + file.columns().size();
   std::vector<Event> events;
@@ -16,6 +19,11 @@ VertexReach::VertexReach(const hypermesh::File& file, outofcore::Progress& progr
     const auto bytes = unwrap(file.pages().load(k * stride));
     const auto page =
         unwrap(hypermesh::validatePage(bytes.bytes(), file.geometryEntry(k), file.header(), file.reader().path(), k));
+    ranges += 1 + page.runs.size();
+    if (memory != nullptr) {
+      held_ = {};
+      held_ = memory->reserve(ranges * kRangeBytes, "the ranges of vertices that pages share");
+    }
     const auto add = [&](std::uint64_t first, std::uint64_t count) {
       if (count == 0) return;
       events.push_back({first, k, true});

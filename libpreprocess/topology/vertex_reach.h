@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/hypermesh.h"
+#include "libpreprocess/outofcore/memory_budget.h"
 #include "libpreprocess/outofcore/progress.h"
 
 namespace tet4d::topology {
@@ -21,8 +22,8 @@ struct Reach {
 class VertexReach {
  public:
   // Reads every geometry page once (phase "reach"). Memory O(runs of the file); time O(file + runs log runs). Throws
-  // Error where a page is damaged.
-  VertexReach(const hypermesh::File& file, outofcore::Progress& progress);
+  // Error where a page is damaged. If `memory` is given, what the runs need is reserved from it: 144 bytes a run.
+  VertexReach(const hypermesh::File& file, outofcore::Progress& progress, outofcore::MemoryBudget* memory = nullptr);
 
   // vertex: below the file's count. O(log runs).
   Reach of(std::uint64_t vertex) const;
@@ -39,6 +40,7 @@ class VertexReach {
   };
   void sweep(std::vector<Event> events);
 
+  outofcore::MemoryBudget::Reservation held_;
   std::vector<std::uint64_t> starts_;  // of maximal ranges of vertices with the same reach
   std::vector<Reach> reaches_;
   std::vector<std::uint64_t> first_vertex_, last_use_of_owner_;  // by page

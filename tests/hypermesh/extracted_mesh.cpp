@@ -107,7 +107,8 @@ std::string manifoldFaults(exchange::FrameSource& source, const Options& options
   const File file = unwrap(File::open(path));
   outofcore::Progress progress;
   const topology::HypermeshCheck faces = topology::checkHypermesh(file, progress);
-  const topology::LinkCheck links = topology::checkLinks(file, std::uint64_t{1} << 30, progress);
+  outofcore::MemoryBudget memory;
+  const topology::LinkCheck links = topology::checkLinks(file, memory, progress);
   // By the counts: a sheet of tetrahedra at one time is what data give that change everywhere alike.
   std::string faults;
   const auto none = [&](std::uint64_t count, const std::string& what) {

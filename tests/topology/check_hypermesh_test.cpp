@@ -77,6 +77,22 @@ TEST_F(CheckHypermesh, SlabsMeetAndOnlyTheTimeWallsAreOpen) {
   EXPECT_EQ(check.most_open_faces, 12u);  // the cube's triangles at one frame, whatever the number of slabs
 }
 
+TEST_F(CheckHypermesh, ReservesAPageAndItsFrontWhateverTheNumberOfSlabs) {
+  std::uint64_t peak_of_few = 0;
+  for (const std::size_t frames : {6u, 300u}) {
+    const SpaceTimeMesh cube = testing::stillCube(frames);
+    testing::writeFile(path_, cube, slabs(cube, frames), kOnGrid, testing::farDomain(cube));
+    outofcore::Progress progress;
+    outofcore::MemoryBudget memory;
+    EXPECT_TRUE(checkHypermesh(unwrap(hypermesh::File::open(path_)), progress, &memory).ok());
+    EXPECT_EQ(memory.used(), 0u);
+    if (frames == 6) peak_of_few = memory.peak();
+    EXPECT_LE(memory.peak(), peak_of_few + frames * 2 * 144) << "but for the ranges that pages share";
+    outofcore::MemoryBudget half(memory.peak() / 2);
+    EXPECT_THROW(checkHypermesh(unwrap(hypermesh::File::open(path_)), progress, &half), Error);
+  }
+}
+
 // The front is found from the pages alone: any tetrahedron in any page, vertices owned anywhere.
 TEST_F(CheckHypermesh, CountsDoNotDependOnThePages) {
   const SpaceTimeMesh cube = testing::stillCube(4);
