@@ -5,6 +5,7 @@
 #include "libpreprocess/error.h"
 #include "libpreprocess/exchange/input_file.h"
 #include "libpreprocess/exchange/read_nrrd.h"
+#include "libpreprocess/exchange/read_vti.h"
 
 namespace tet4d::exchange {
 namespace {
@@ -16,6 +17,12 @@ std::unique_ptr<FrameFile> make(const std::string& path, const FrameFileOptions&
 
 bool isNrrd(std::string_view head) { return head.starts_with("NRRD000"); }
 
+std::unique_ptr<FrameFile> makeVti(const std::string& path, const FrameFileOptions& options) {
+  return openVti(path, options.array);
+}
+
+bool isVtkXml(std::string_view head) { return head.find("<VTKFile") != head.npos; }
+
 // A format: its suffixes, how a file of it begins, and its reader. A new one is a row here.
 struct Format {
   std::string_view name;
@@ -24,8 +31,9 @@ struct Format {
   std::unique_ptr<FrameFile> (*open)(const std::string& path, const FrameFileOptions& options);
 };
 constexpr std::size_t kHeadBytes = 256;
-constexpr std::array<Format, 1> kFormats{{
+constexpr std::array<Format, 2> kFormats{{
     {"NRRD", {".nrrd", ".nhdr"}, isNrrd, make<NrrdFile>},
+    {"VTK ImageData", {".vti"}, isVtkXml, makeVti},
 }};
 
 bool hasSuffix(const Format& format, std::string_view path) {

@@ -59,7 +59,9 @@ class FrameFile {
 };
 
 // What a file does not tell of itself.
-struct FrameFileOptions {};
+struct FrameFileOptions {
+  std::string array;  // which array of a VTK file, as selectVtkScalar() takes it; empty: the active or only scalar
+};
 
 // Opens a file by its suffix or, where that is of no known format, by its first bytes. Throws Error naming file and
 // place: the file cannot be opened, is of no known format, or its header is not proved by what is in it.

@@ -9,6 +9,7 @@
 #include "libpreprocess/exchange/file_series.h"
 #include "libpreprocess/exchange/frame_series.h"
 #include "libpreprocess/exchange/frame_source.h"
+#include "libpreprocess/exchange/read_vti.h"
 
 namespace tet4d::exchange {
 namespace {
@@ -60,6 +61,18 @@ std::unique_ptr<FrameSource> openGrid4(const std::string& path, const FrameSourc
   return std::make_unique<Grid4Frames>(std::move(file), options.times);
 }
 
+// The files of a series at the times it tells, whatever they tell themselves.
+std::unique_ptr<FrameSource> openPvd(const std::string& path, FrameSourceOptions options) {
+  std::vector<std::string> names;
+  std::vector<double> times;
+  for (PvdStep& step : readPvd(path)) {
+    names.push_back(std::move(step.file));
+    times.push_back(step.time);
+  }
+  if (options.times.empty()) options.times = std::move(times);
+  return openFileSeries(names, options);
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> openFrames(const std::vector<std::string>& inputs, const FrameSourceOptions& options) {
@@ -73,6 +86,7 @@ std::unique_ptr<FrameSource> openFrames(const std::vector<std::string>& inputs, 
                              : openFileSeries(files, options);
   }
   if (input.ends_with(".t4g")) return openGrid4(input, options);
+  if (input.ends_with(".pvd")) return openPvd(input, options);
   if (!fs::exists(input, ignored) && input.find('%') != std::string::npos) {
     return openFileSeries(filesOfPattern(input), options);
   }
