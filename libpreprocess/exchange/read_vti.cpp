@@ -127,8 +127,7 @@ std::unique_ptr<VtiFile::Opened> VtiFile::open() const {
   for (const Piece& piece : opened->pieces) {
     opened->arrays.push_back(openVtkArray(document, *piece.array, opened->file, piece.samples()));
     const VtkArray& array = *opened->arrays.back();
-    if (array.type() != opened->arrays.front()->type() ||
-        array.components() != opened->arrays.front()->components()) {
+    if (array.type() != opened->arrays.front()->type() || array.components() != opened->arrays.front()->components()) {
       document.fail(*piece.array, "its type or components differ from those in the first piece", kMakeAgain);
     }
     // Another piece may have another array of components.
@@ -304,8 +303,8 @@ std::vector<PvdStep> readPvd(const std::string& path) {
     steps.push_back({*time, beside.string()});
   }
   std::stable_sort(steps.begin(), steps.end(), [](const PvdStep& a, const PvdStep& b) { return a.time < b.time; });
-  const auto same =
-      std::adjacent_find(steps.begin(), steps.end(), [](const PvdStep& a, const PvdStep& b) { return a.time == b.time; });
+  const auto same = std::adjacent_find(steps.begin(), steps.end(),
+                                       [](const PvdStep& a, const PvdStep& b) { return a.time == b.time; });
   if (same != steps.end()) {
     throw Error(FaultCode::kBadInput, path, "time " + numberText(same->time),
                 "several files are of this time: " + same->file + " and " + std::next(same)->file,

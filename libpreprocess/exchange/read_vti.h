@@ -12,9 +12,9 @@
 
 namespace tet4d::exchange {
 
-// Opens a .vti; `array` as in selectVtkScalar(). Throws as readVtkDocument() and openVtkArray() do, and Error{kBadInput}
-// for pieces that overlap or leave gaps, a direction that is degenerate, sizes that do not fit. Of the file it keeps the
-// header; the arrays of all pieces are open while it is read.
+// Opens a .vti; `array` as in selectVtkScalar(). Throws as readVtkDocument() and openVtkArray() do, and
+// Error{kBadInput} for pieces that overlap or leave gaps, a direction that is degenerate, sizes that do not fit. Of the
+// file it keeps the header; the arrays of all pieces are open while it is read.
 std::unique_ptr<FrameFile> openVti(const std::string& path, const std::string& array);
 
 struct PvdStep {

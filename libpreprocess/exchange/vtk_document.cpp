@@ -156,13 +156,16 @@ class Parser {
     const bool joins = begin == text_reach_;
     const bool is_blank = std::all_of(piece.begin(), piece.end(), isBlank);
     if (joins || !is_blank) text_reach_ = begin + in_file;
-    if (is_blank || open_.empty() || open_.back()->name != "DataArray") return;
+    if (open_.empty() || open_.back()->name != "DataArray") return;
+    const bool is_line_end = piece == "\n" && in_file <= 2;
+    if (in_file != piece.size() && !is_line_end) {
+      stop("the text of a <DataArray> holds a character by its number or name", "write the character itself");
+    }
+    if (is_blank) return;
     XmlElement& element = *open_.back();
     const auto first = std::find_if_not(piece.begin(), piece.end(), isBlank) - piece.begin();
     const auto last = std::find_if_not(piece.rbegin(), piece.rend(), isBlank).base() - piece.begin();
-    if (in_file != piece.size()) {
-      stop("the text of a <DataArray> holds a character by its number or name", "write the character itself");
-    } else if (element.text_end != 0 && !joins) {
+    if (element.text_end != 0 && !joins) {
       stop("the text of a <DataArray> is divided by another element, a comment or a section", "write it in one piece");
     }
     if (element.text_end == 0) element.text_begin = begin + static_cast<std::uint64_t>(first);

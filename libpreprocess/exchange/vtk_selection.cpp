@@ -29,8 +29,7 @@ std::vector<Candidate> candidatesOf(const VtkDocument& document, const XmlElemen
     for (const XmlElement& array : data->children) {
       const std::string* name = array.attribute("Name");
       if (array.name != "DataArray" || name == nullptr || !vtkTypeOf(array)) continue;
-      found.push_back(
-          {*name, vtkComponentsOf(document, array), i == 1, active != nullptr && *active == *name});
+      found.push_back({*name, vtkComponentsOf(document, array), i == 1, active != nullptr && *active == *name});
     }
   }
   return found;
@@ -97,10 +96,10 @@ VtkSelection selectVtkScalar(const VtkDocument& document, const XmlElement& piec
   };
   if (const auto whole = named(wanted); whole != candidates.end()) {
     if (whole->components == 1) return {wanted, 0, whole->of_cells};
-    failSelection(document,
-                  "the array " + inQuotes(wanted) + " has " + std::to_string(whole->components) +
-                      " components, one is needed",
-                  "choose one of them: " + wanted + ":0 is the first; for a magnitude, write it as an array");
+    failSelection(
+        document,
+        "the array " + inQuotes(wanted) + " has " + std::to_string(whole->components) + " components, one is needed",
+        "choose one of them: " + wanted + ":0 is the first; for a magnitude, write it as an array");
   }
   const auto [name, component] = splitComponent(wanted);
   const auto array = named(name);

@@ -18,9 +18,9 @@ struct VtkSelection {
   bool of_cells = false;        // in CellData, otherwise in PointData
 };
 
-// The scalar `wanted` of a <Piece>: "p", or "U:1" for the second component of U; an array of that very name comes first,
-// one of points before one of cells. If it is empty: the active Scalars, or the only array of one component. Throws
-// Error{kBadInput} that lists the arrays and names the nearest.
+// The scalar `wanted` of a <Piece>: "p", or "U:1" for the second component of U; an array of that very name comes
+// first, one of points before one of cells. If it is empty: the active Scalars, or the only array of one component.
+// Throws Error{kBadInput} that lists the arrays and names the nearest.
 VtkSelection selectVtkScalar(const VtkDocument& document, const XmlElement& piece, const std::string& wanted);
 
 // The array of a selection in a piece, which must be there.
