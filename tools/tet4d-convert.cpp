@@ -82,6 +82,8 @@ int main(int argc, char** argv) {
       .heading("Frames")
       .flag("--allow-gaps", "accept holes in the files' numbering", &options.allow_gaps)
       .option("--frame-times", "T,T,...", "world times of the frames, instead of the files'", &options.frame_times)
+      .option("--array", "NAME", "which array of VTK files, a component as NAME:0; the active or only scalar otherwise",
+              &options.array)
       .option("--page-codec", "CODEC", "how a .t4g's frames are stored", cli::Choice{&options.codec, {"raw", "zstd"}})
       .heading("Options")
       .common({cli::kOutputRequired, cli::kForce, cli::kStats, cli::kDepfile});

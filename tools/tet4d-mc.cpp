@@ -25,6 +25,7 @@ struct Arguments {
   double iso = 0;
   std::string split = "hull", nan = "outside", codec = "raw", times;
   bool allow_gaps = false;
+  std::string array;
 };
 
 std::string hex(std::uint64_t value) {
@@ -143,6 +144,7 @@ int extract(cli::Session& session, const Arguments& arguments) {
     throw Error(FaultCode::kUsage, "", "FRAMES", "frames cannot be read from standard input yet", "give files");
   }
   exchange::FrameSourceOptions source_options;
+  source_options.file.array = arguments.array;
   source_options.allow_gaps = arguments.allow_gaps;
   source_options.times = timesOf(arguments.times, session);
   const std::unique_ptr<exchange::FrameSource> source = exchange::openFrames(arguments.frames, source_options);
@@ -186,6 +188,8 @@ int main(int argc, char** argv) {
       .option("--times", "TIMES",
               "world times of the frames instead of the files' own: T,T,... or a file that holds them",
               &arguments.times, cli::kKeepsResult | cli::kIsInput)
+      .option("--array", "NAME", "which array of VTK files, a component as NAME:0; the active or only scalar otherwise",
+              &arguments.array)
       .flag("--allow-gaps", "accept a hole in the numbering of the files", &arguments.allow_gaps, cli::kKeepsResult)
       .option("--page-codec", "CODEC", "how pages are stored", cli::Choice{&arguments.codec, {"raw", "zstd"}})
       .common(

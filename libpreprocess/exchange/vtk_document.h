@@ -35,6 +35,12 @@ struct XmlElement {
   const XmlElement* child(std::string_view child_name) const;  // the first of the name
 };
 
+// The data behind the XML.
+struct VtkAppended {
+  bool base64 = false;
+  std::uint64_t begin = 0;  // in the file, behind the underscore
+};
+
 struct VtkDocument {
   std::string path;
   std::uint64_t file_bytes = 0;
@@ -43,11 +49,7 @@ struct VtkDocument {
   std::string compressor;  // of binary and appended data, empty if there is none
   bool big_endian = false;
   bool wide_headers = false;  // sizes before binary data are 64-bit numbers, otherwise 32-bit
-  struct Appended {
-    bool base64 = false;
-    std::uint64_t begin = 0;  // of the data in the file, behind the underscore
-  };
-  std::optional<Appended> appended;
+  std::optional<VtkAppended> appended;
 
   // The element that is called as the file's type.
   const XmlElement& dataset() const;

@@ -181,7 +181,7 @@ TEST(VtkArrayStiff, TextHoldsWhatTheTypeHolds) {
                                                                                     {"UInt64", "18446744073709551616"},
                                                                                     {"Float32", "1,5"},
                                                                                     {"Float32", "x"}}) {
-    const Fault fault = faultOf([&] { read(type, "0 " + value, 2); });
+    const Fault fault = faultOf([&, t = type, v = value] { read(t, "0 " + v, 2); });
     EXPECT_NE(fault.what.find(value), std::string::npos) << fault.what;
     EXPECT_NE(fault.place.find("value 1"), std::string::npos) << fault.place;
   }
@@ -199,7 +199,7 @@ TEST(VtkArrayStiff, CountsAreWholeAndNotNegative) {
   EXPECT_EQ(counts("UInt64", "18446744073709551615"), std::numeric_limits<std::uint64_t>::max());
   for (const auto& [type, value] : std::vector<std::pair<std::string, std::string>>{
            {"Int64", "-1"}, {"Float32", "0.5"}, {"Float32", "nan"}, {"Float64", "1e300"}, {"Int8", "-7"}}) {
-    EXPECT_NE(faultOf([&] { counts(type, value); }).what.find("whole number"), std::string::npos);
+    EXPECT_NE(faultOf([&, t = type, v = value] { counts(t, v); }).what.find("whole number"), std::string::npos);
   }
 }
 

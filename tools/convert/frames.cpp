@@ -26,7 +26,7 @@ void convertFrames(cli::Session& session, const Options& options) {
         (options.wantsSlices() ? "--at and --times are" : options.sliceOption() + " is") + " for slices of a hypermesh",
         "make one first: tet4d-mc FRAMES --iso V -o X.t4h");
   }
-  const auto frames = exchange::openFrames(options.inputs, {options.allow_gaps, options.frame_times, {}});
+  const auto frames = exchange::openFrames(options.inputs, {options.allow_gaps, options.frame_times, {options.array}});
   if (suffix == ".t4g") {
     const paged::Codec codec = options.codec == "zstd" ? paged::Codec::kZstd : paged::Codec::kRaw;
     const auto provenance = [&](std::uint64_t digest) {

@@ -19,6 +19,7 @@ struct Options {
   // Frames.
   std::string codec = "raw";
   bool allow_gaps = false;
+  std::string array;
   std::vector<double> frame_times;
 
   bool wantsSlices() const { return !at.empty() || !times.empty(); }
@@ -33,7 +34,7 @@ struct Options {
 
 inline constexpr const char* kPossible =
     "possible are: .t4h to .vtu, .hyper; .t4h with --at to .ply, .vtp, .off, .obj, .stl, .glb; .t4h with --times "
-    "to a pattern such as %04d.ply or to .pvd; frames (.nrrd, .nhdr, .t4g, a directory, a pattern) to .t4g, .nrrd";
+    "to a pattern such as %04d.ply or to .pvd; frames (.nrrd, .nhdr, .vti, .pvd, .t4g, a directory, a pattern) to .t4g, .nrrd";
 
 [[noreturn]] inline void failUsage(const std::string& what, const std::string& remedy = kPossible) {
   throw Error(FaultCode::kUsage, "", "", what, remedy);
