@@ -54,6 +54,15 @@ std::optional<SplitName> splitAtLastNumber(std::string_view name) {
   return SplitName{name.substr(0, begin), name.substr(begin, end - begin), name.substr(end)};
 }
 
+// What a file is by its suffix; empty for what is no frame. Raw files count where raw ones are looked for: beside
+// headers they are their data.
+std::string_view kindOf(const std::string& name, bool raw) {
+  for (const std::string_view suffix : {".raw", ".bin", ".dat"}) {
+    if (raw && name.ends_with(suffix)) return suffix;
+  }
+  return frameFormatOf(name);
+}
+
 }  // namespace
 
 bool naturalLess(const std::string& a, const std::string& b) {
@@ -77,20 +86,21 @@ bool naturalLess(const std::string& a, const std::string& b) {
   return a < b;  // equal but for zeros in front
 }
 
-std::vector<std::string> filesOfDirectory(const std::string& directory) {
+std::vector<std::string> filesOfDirectory(const std::string& directory, bool raw) {
   std::vector<std::string> files;
   for (const std::string& name : namesIn(directory)) {
-    if (!frameFormatOf(name).empty()) files.push_back((fs::path(directory) / name).string());
+    if (!kindOf(name, raw).empty()) files.push_back((fs::path(directory) / name).string());
   }
   if (files.empty()) {
-    throw Error(FaultCode::kBadInput, directory, "", "the directory holds no " + frameSuffixes() + " files",
+    throw Error(FaultCode::kBadInput, directory, "",
+                "the directory holds no " + (raw ? std::string(".raw, .bin, .dat") : frameSuffixes()) + " files",
                 "name the frames' files");
   }
   std::sort(files.begin(), files.end(), naturalLess);
   for (const std::string& file : files) {
-    if (frameFormatOf(file) == frameFormatOf(files.front())) continue;
+    if (kindOf(file, raw) == kindOf(files.front(), raw)) continue;
     throw Error(FaultCode::kBadInput, directory, "",
-                "holds files of two formats, " + files.front() + " and " + file + " among them",
+                "holds files of two kinds, " + files.front() + " and " + file + " among them",
                 "give a pattern of one of them, such as a_%04d.nrrd");
   }
   return files;

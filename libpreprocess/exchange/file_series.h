@@ -11,9 +11,9 @@ namespace tet4d::exchange {
 // "frame2" before "frame10": runs of digits compare as numbers, everything else by bytes.
 bool naturalLess(const std::string& a, const std::string& b);
 
-// The files of a directory that have a frame format's suffix, in natural order. Throws Error if there are none, files
-// of two formats, or it cannot be read.
-std::vector<std::string> filesOfDirectory(const std::string& directory);
+// The files of a directory that have a frame format's suffix, or (`raw`) that of a raw file, in natural order. Throws
+// Error if there are none, files of two formats, or it cannot be read.
+std::vector<std::string> filesOfDirectory(const std::string& directory, bool raw = false);
 
 // The files that match a printf pattern (path with one %d …), by number. Throws Error if there are none.
 std::vector<std::string> filesOfPattern(const std::string& pattern);

@@ -4,18 +4,23 @@
 
 #include "libpreprocess/error.h"
 #include "libpreprocess/exchange/input_file.h"
+#include "libpreprocess/exchange/read_metaimage.h"
 #include "libpreprocess/exchange/read_nrrd.h"
+#include "libpreprocess/exchange/read_raw.h"
 #include "libpreprocess/exchange/read_vti.h"
 
 namespace tet4d::exchange {
 namespace {
 
 template <class File>
-std::unique_ptr<FrameFile> make(const std::string& path, const FrameFileOptions&) {
-  return std::make_unique<File>(path);
+std::unique_ptr<FrameFile> make(const std::string& path, const FrameFileOptions& options) {
+  return std::make_unique<File>(path, options);
 }
 
 bool isNrrd(std::string_view head) { return head.starts_with("NRRD000"); }
+bool isMetaImage(std::string_view head) {
+  return head.starts_with("ObjectType") || (head.starts_with("NDims") && head.find('=') != std::string_view::npos);
+}
 
 std::unique_ptr<FrameFile> makeVti(const std::string& path, const FrameFileOptions& options) {
   return openVti(path, options.array);
@@ -31,9 +36,10 @@ struct Format {
   std::unique_ptr<FrameFile> (*open)(const std::string& path, const FrameFileOptions& options);
 };
 constexpr std::size_t kHeadBytes = 256;
-constexpr std::array<Format, 2> kFormats{{
+constexpr std::array<Format, 3> kFormats{{
     {"NRRD", {".nrrd", ".nhdr"}, isNrrd, make<NrrdFile>},
     {"VTK ImageData", {".vti"}, isVtkXml, makeVti},
+    {"MetaImage", {".mha", ".mhd"}, isMetaImage, make<MetaImageFile>},
 }};
 
 bool hasSuffix(const Format& format, std::string_view path) {
@@ -59,10 +65,20 @@ const Format* formatByHead(const std::string& path) {
 
 std::unique_ptr<FrameFile> openFrameFile(const std::string& path, const FrameFileOptions& options) {
   const Format* format = formatBySuffix(path);
+  if (options.raw) {
+    if (format == nullptr) return std::make_unique<RawFile>(path, *options.raw, options.centering);
+    throw Error(FaultCode::kUsage, path, "",
+                "--size is for raw files, but by its suffix this is a " + std::string(format->name) + " file",
+                "leave --size out, or give the file another name");
+  }
   if (format == nullptr) format = formatByHead(path);
   if (format != nullptr) return format->open(path, options);
   throw Error(FaultCode::kBadInput, path, "byte 0", "neither its suffix nor its first bytes are of a known format",
-              "give one of " + frameSuffixes());
+              "give one of " + frameSuffixes() + "; a raw file needs --size X,Y,Z and --type");
+}
+
+std::string sizeText(const GridInfo& grid) {
+  return std::to_string(grid.dims[0]) + " x " + std::to_string(grid.dims[1]) + " x " + std::to_string(grid.dims[2]);
 }
 
 std::string_view frameFormatOf(const std::string& path) {

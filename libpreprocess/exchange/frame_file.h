@@ -58,14 +58,32 @@ class FrameFile {
   }
 };
 
+// Where samples sit: on the nodes of the grid, or in the middle of its cells.
+enum class Centering { kUntold, kNode, kCell };
+
+// How the bytes of a raw file are to be understood.
+struct RawLayout {
+  std::array<std::uint64_t, 3> dims{};  // samples along x, y, z
+  SampleType type = SampleType::kF32;
+  bool big_endian = false;
+  std::array<double, 3> spacing{1, 1, 1}, origin{0, 0, 0};  // world; origin is the corner of cells, or the first node
+  std::uint64_t skip = 0;                                   // bytes in front of the samples
+};
+
 // What a file does not tell of itself.
 struct FrameFileOptions {
+  std::optional<RawLayout> raw;              // given: files are raw
+  Centering centering = Centering::kUntold;  // where the format has centerings and the file tells none
   std::string array;  // which array of a VTK file, as selectVtkScalar() takes it; empty: the active or only scalar
 };
 
-// Opens a file by its suffix or, where that is of no known format, by its first bytes. Throws Error naming file and
-// place: the file cannot be opened, is of no known format, or its header is not proved by what is in it.
+// Opens a file by its suffix or, where that is of no known format, by its first bytes; with options.raw as a raw file.
+// Throws Error naming file and place: the file cannot be opened, is of no known format, or its header is not proved by
+// what is in it.
 std::unique_ptr<FrameFile> openFrameFile(const std::string& path, const FrameFileOptions& options = {});
+
+// "2 x 3 x 4", for messages.
+std::string sizeText(const GridInfo& grid);
 
 // The name of the format a file's suffix stands for ("NRRD"); empty for other suffixes. No file is opened.
 std::string_view frameFormatOf(const std::string& path);

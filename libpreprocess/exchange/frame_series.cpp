@@ -48,10 +48,6 @@ class FileMovie final : public FrameSource {
   std::vector<double> times_;
 };
 
-std::string sizeText(const GridInfo& grid) {
-  return std::to_string(grid.dims[0]) + " x " + std::to_string(grid.dims[1]) + " x " + std::to_string(grid.dims[2]);
-}
-
 // Equal but for the last digits of a decimal text.
 bool nearlyEqual(const AffineMap& a, const AffineMap& b) {
   double cell = 0;
@@ -62,24 +58,6 @@ bool nearlyEqual(const AffineMap& a, const AffineMap& b) {
     for (std::size_t i = 0; i < 3; ++i) distance = std::max(distance, std::abs(a.axes[c][i] - b.axes[c][i]));
   }
   return distance <= 1e-6 * cell;
-}
-
-void checkSameGrid(const FrameFileHeader& first, const FrameFileHeader& other) {
-  const auto fail = [&](const std::string& what, const std::string& remedy) {
-    throw Error(FaultCode::kBadInput, other.path, "header", what, remedy);
-  };
-  if (other.grid.dims != first.grid.dims) {
-    fail("the size is " + sizeText(other.grid) + ", but " + first.path + " has " + sizeText(first.grid),
-         "all frames must be of one size");
-  }
-  if (other.grid.type != first.grid.type) {
-    fail("the samples are " + std::string(sampleName(other.grid.type)) + ", but " + first.path + " has " +
-             std::string(sampleName(first.grid.type)),
-         "all frames must be of one type (unu convert)");
-  }
-  if (!nearlyEqual(first.grid.index_to_world, other.grid.index_to_world)) {
-    fail("the grid's spacing, axes or origin differ from those of " + first.path, "all frames must lie on one grid");
-  }
 }
 
 // Times the files tell, growing; nothing if none tells its time.
@@ -140,6 +118,25 @@ std::vector<double> seriesTimes(const std::vector<std::string>& names, const Fra
 
 }  // namespace
 
+void checkSameGrid(const std::string& first_name, const GridInfo& first, const std::string& other_name,
+                   const GridInfo& other) {
+  const auto fail = [&](const std::string& what, const std::string& remedy) {
+    throw Error(FaultCode::kBadInput, other_name, "header", what, remedy);
+  };
+  if (other.dims != first.dims) {
+    fail("the size is " + sizeText(other) + ", but " + first_name + " has " + sizeText(first),
+         "all frames must be of one size");
+  }
+  if (other.type != first.type) {
+    fail("the samples are " + std::string(sampleName(other.type)) + ", but " + first_name + " has " +
+             std::string(sampleName(first.type)),
+         "all frames must be of one type (unu convert)");
+  }
+  if (!nearlyEqual(first.index_to_world, other.index_to_world)) {
+    fail("the grid's spacing, axes or origin differ from those of " + first_name, "all frames must lie on one grid");
+  }
+}
+
 void checkGivenTimes(const std::vector<double>& times, std::size_t frames) {
   if (times.size() != frames) {
     throw Error(FaultCode::kUsage, "", "frame times",
@@ -166,7 +163,7 @@ std::unique_ptr<FrameSource> openFileSeries(const std::vector<std::string>& name
                       " files",
                   "give one 4D file alone, or 3D files of one frame each");
     }
-    checkSameGrid(files.front()->header(), header);
+    checkSameGrid(names.front(), files.front()->header().grid, name, header.grid);
   }
   std::vector<double> times = seriesTimes(names, files, options);
   return std::make_unique<FileSeries>(std::move(files), std::move(times));

@@ -17,6 +17,11 @@ std::unique_ptr<FrameSource> openFileSeries(const std::vector<std::string>& name
 // All frames of one file.
 std::unique_ptr<FrameSource> openFileMovie(std::unique_ptr<FrameFile> file, const FrameSourceOptions& options);
 
+// Proves that a frame's grid is that of the first, up to the digits of a decimal text. Throws Error{kBadInput} naming
+// both.
+void checkSameGrid(const std::string& first_name, const GridInfo& first, const std::string& other_name,
+                   const GridInfo& other);
+
 // Proves that times given by the caller are as many as frames and growing. Throws Error{kUsage}.
 void checkGivenTimes(const std::vector<double>& times, std::size_t frames);
 

@@ -45,8 +45,9 @@ struct FrameSourceOptions {
 
 // Opens frames given on a command line: several files of one frame each (in the order given), one directory (its
 // files of a known format in natural order), one file of many frames, one printf pattern (alpha_%04d.nrrd), one .pvd
-// series of .vti, or one .t4g. Throws Error: a file that is missing, short, of another size or type than the first, out
-// of time order, or a hole in the numbering, each by name. Headers only are read here.
+// series of .vti, one .t4g, or "-" for frames from standard input (frame_stream.h). Throws Error: a file that is
+// missing, short, of another size or type than the first, out of time order, or a hole in the numbering, each by name.
+// Headers only are read here.
 std::unique_ptr<FrameSource> openFrames(const std::vector<std::string>& inputs, const FrameSourceOptions& options = {});
 
 }  // namespace tet4d::exchange

@@ -16,6 +16,7 @@ struct Axis {
   std::uint64_t size = 0;
   double spacing = kUnknown, min = kUnknown, max = kUnknown;
   bool cell = false;
+  bool tells_centering = false;
   std::string kind;
   std::optional<std::vector<double>> direction;  // space directions; none if the header has none for this axis
 };
@@ -24,7 +25,7 @@ struct Axis {
 std::vector<std::string> axisWords(const NrrdFields& fields, const std::string& name, std::size_t dimension) {
   const NrrdField* field = fields.find(name);
   if (field == nullptr) return {};
-  auto words = nrrdWords(field->text);
+  auto words = wordsOf(field->text);
   if (words.size() != dimension) {
     fields.fail(*field,
                 "\"" + name + "\" has " + std::to_string(words.size()) + " entries, but there are " +
@@ -37,7 +38,7 @@ std::vector<std::string> axisWords(const NrrdFields& fields, const std::string& 
 void readNumbers(const NrrdFields& fields, const std::string& name, std::vector<Axis>& axes, double Axis::*member) {
   const auto words = axisWords(fields, name, axes.size());
   for (std::size_t a = 0; a < words.size(); ++a) {
-    const auto number = nrrdNumber(words[a]);
+    const auto number = numberOf(words[a]);
     if (!number) {
       fields.fail(*fields.find(name), inQuotes(words[a]) + " is no number", "correct \"" + name + "\"");
     }
@@ -47,7 +48,7 @@ void readNumbers(const NrrdFields& fields, const std::string& name, std::vector<
 
 std::vector<Axis> readSizes(const NrrdFields& fields) {
   const NrrdField& field = fields.need("dimension");
-  const auto dimension = nrrdCount(field.text);
+  const auto dimension = countOf(field.text);
   if (!dimension || *dimension < 3 || *dimension > 5) {
     fields.fail(field,
                 "dimension is " + inQuotes(field.text) + ", expected 3 (a frame) or 4 (frames along the last axis)",
@@ -57,7 +58,7 @@ std::vector<Axis> readSizes(const NrrdFields& fields) {
   const NrrdField& sizes = fields.need("sizes");
   const auto words = axisWords(fields, "sizes", axes.size());
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    const auto size = nrrdCount(words[a]);
+    const auto size = countOf(words[a]);
     if (!size || *size == 0) {
       fields.fail(sizes, "the size " + inQuotes(words[a]) + " is no number from 1 on", "correct \"sizes\"");
     }
@@ -70,7 +71,8 @@ void readCenterings(const NrrdFields& fields, std::vector<Axis>& axes) {
   const auto words = axisWords(fields, "centerings", axes.size());
   for (std::size_t a = 0; a < words.size(); ++a) {
     axes[a].cell = words[a] == "cell";
-    if (!axes[a].cell && words[a] != "node" && words[a] != "none" && words[a] != "???") {
+    axes[a].tells_centering = axes[a].cell || words[a] == "node";
+    if (!axes[a].tells_centering && words[a] != "none" && words[a] != "???") {
       fields.fail(*fields.find("centerings"), inQuotes(words[a]) + " is no centering", "write cell, node or none");
     }
   }
@@ -163,7 +165,7 @@ AffineMap mapOfLines(const NrrdFields& fields, const std::vector<Axis>& axes, st
 std::vector<double> spaceOrigin(const NrrdFields& fields, std::size_t components) {
   const NrrdField* field = fields.find("space origin");
   if (field == nullptr) return std::vector<double>(components, 0.0);
-  const auto words = nrrdWords(field->text);
+  const auto words = wordsOf(field->text);
   auto origin = words.size() == 1 ? nrrdVector(words[0]) : std::vector<double>{};
   if (origin.size() != components) {
     fields.fail(*field,
@@ -210,8 +212,8 @@ AffineMap mapOfDirections(const NrrdFields& fields, const std::vector<Axis>& axe
 
 }  // namespace
 
-NrrdAxes readNrrdAxes(const NrrdFields& fields) {
-  const std::vector<Axis> axes = readAxes(fields);
+NrrdAxes readNrrdAxes(const NrrdFields& fields, Centering centering) {
+  std::vector<Axis> axes = readAxes(fields);
   NrrdAxes result;
   result.first_space_axis = leadingAxes(fields, axes);
   const std::size_t first = result.first_space_axis;
@@ -220,6 +222,9 @@ NrrdAxes readNrrdAxes(const NrrdFields& fields) {
     fields.fail(fields.need("dimension"),
                 "there are " + std::to_string(axes.size()) + " axes, expected x, y, z and frames",
                 "give one 3D file a frame, or one 4D file");
+  }
+  for (std::size_t a = first; a < first + 3; ++a) {
+    if (!axes[a].tells_centering) axes[a].cell = centering == Centering::kCell;
   }
   for (const Axis& axis : axes) result.sizes.push_back(axis.size);
   for (std::size_t c = 0; c < 3; ++c) result.dims[c] = axes[first + c].size;
@@ -244,8 +249,8 @@ namespace {
 // Times of a list "T T T", from the key `times`.
 std::vector<double> listedTimes(const NrrdFields& fields, const std::string& text, std::uint64_t frames) {
   std::vector<double> times;
-  for (const std::string& word : nrrdWords(text)) {
-    const auto time = nrrdNumber(word);
+  for (const std::string& word : wordsOf(text)) {
+    const auto time = numberOf(word);
     if (!time || !std::isfinite(*time)) {
       throw Error(FaultCode::kBadInput, fields.path, "key times", inQuotes(word) + " is no time",
                   "write one finite number a frame");
@@ -263,8 +268,8 @@ std::vector<double> listedTimes(const NrrdFields& fields, const std::string& tex
 std::vector<double> singleTime(const NrrdFields& fields) {
   const auto key = fields.key_values.find("time");
   if (key == fields.key_values.end()) return {};
-  const auto words = nrrdWords(key->second);
-  const auto time = words.size() == 1 ? nrrdNumber(words[0]) : std::nullopt;
+  const auto words = wordsOf(key->second);
+  const auto time = words.size() == 1 ? numberOf(words[0]) : std::nullopt;
   if (!time || !std::isfinite(*time)) {
     throw Error(FaultCode::kBadInput, fields.path, "key time", inQuotes(key->second) + " is no time",
                 "write one finite number: time:=0.5");

@@ -22,8 +22,8 @@ struct NrrdAxes {
   std::size_t first_space_axis = 0;  // 1 behind a scalar axis
 };
 
-// Throws Error{kBadInput} naming the line.
-NrrdAxes readNrrdAxes(const NrrdFields& fields);
+// `centering` is that of space axes whose header tells none. Throws Error{kBadInput} naming the line.
+NrrdAxes readNrrdAxes(const NrrdFields& fields, Centering centering);
 
 // World times of the frames, empty if the file tells none. Call it when the sizes are proved against the file.
 std::vector<double> readNrrdTimes(const NrrdFields& fields, const NrrdAxes& axes);

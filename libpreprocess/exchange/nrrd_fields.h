@@ -10,13 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "libpreprocess/exchange/input_file.h"
+#include "libpreprocess/exchange/header_text.h"
 
 namespace tet4d::exchange {
 
-// Limits against hostile headers.
-inline constexpr std::size_t kMaxNrrdLineBytes = 1024 * 1024;
-inline constexpr std::size_t kMaxNrrdHeaderBytes = 16 * 1024 * 1024;
 inline constexpr std::size_t kMaxNrrdDimension = 16;  // as in Teem
 
 struct NrrdField {
@@ -41,19 +38,11 @@ struct NrrdFields {
   [[noreturn]] void fail(const NrrdField& field, const std::string& what, const std::string& remedy) const;
 };
 
-// Reads the header of an open file. Throws Error{kBadInput} naming the line: no NRRD, a line or header over the limits,
-// a field unknown or given twice, a line that is neither field, key/value nor comment.
-NrrdFields readNrrdFields(const InputFile& file);
+// Reads the header that begins where `bytes` stands, and nothing behind it; messages call it `path`. Throws
+// Error{kBadInput} naming the line: no NRRD, a line or header over the limits, a field unknown or given twice, a line
+// that is neither field, key/value nor comment.
+NrrdFields readNrrdFields(ByteStream& bytes, const std::string& path);
 
-// A text from a file as an error message shows it: in quotes, printable, not long.
-std::string inQuotes(std::string_view text);
-
-// The words of a field's text, divided by blanks; a text in quotes or parentheses is one word.
-std::vector<std::string> nrrdWords(std::string_view text);
-// Whole words as numbers: no sign for counts, no rest, no overflow. Numbers may be nan or inf as NRRD spells them.
-std::optional<std::uint64_t> nrrdCount(std::string_view word);
-std::optional<std::int64_t> nrrdInteger(std::string_view word);
-std::optional<double> nrrdNumber(std::string_view word);
 // "(1,0,0)" as numbers; empty if it is none.
 std::vector<double> nrrdVector(std::string_view word);
 

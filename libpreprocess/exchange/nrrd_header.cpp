@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -71,10 +69,10 @@ SampleType readType(const NrrdFields& fields) {
               "convert to an integer or floating point type (unu convert -t float)");
 }
 
-NrrdEncoding readEncoding(const NrrdFields& fields) {
+Packing readEncoding(const NrrdFields& fields) {
   const NrrdField& field = fields.need("encoding");
-  if (field.text == "raw") return NrrdEncoding::kRaw;
-  if (field.text == "gzip" || field.text == "gz") return NrrdEncoding::kGzip;
+  if (field.text == "raw") return Packing::kNone;
+  if (field.text == "gzip" || field.text == "gz") return Packing::kGzip;
   fields.fail(field, "the encoding " + inQuotes(field.text) + " is not read here, raw and gzip are",
               "encode it again: unu save -f nrrd -e gzip -i IN -o OUT");
 }
@@ -85,7 +83,7 @@ bool readSwap(const NrrdFields& fields, SampleType type) {
   if (field.text != "little" && field.text != "big") {
     fields.fail(field, "endian is " + inQuotes(field.text) + ", expected little or big", "correct \"endian\"");
   }
-  return (field.text == "big") != (std::endian::native == std::endian::big);
+  return isOtherByteOrder(field.text == "big");
 }
 
 std::uint64_t checkedProduct(const NrrdFields& fields, std::uint64_t a, std::uint64_t b) {
@@ -102,18 +100,18 @@ std::uint64_t totalBytes(const NrrdFields& fields, const NrrdAxes& axes, SampleT
   return total;
 }
 
-void readSkips(const NrrdFields& fields, NrrdData& data) {
+void readSkips(const NrrdFields& fields, SampleFiles& data) {
   if (const NrrdField* field = fields.find("line skip")) {
-    const auto lines = nrrdCount(field->text);
+    const auto lines = countOf(field->text);
     if (!lines) fields.fail(*field, inQuotes(field->text) + " is no count of lines", "write a number from 0 on");
     data.line_skip = *lines;
   }
   if (const NrrdField* field = fields.find("byte skip")) {
-    const auto bytes = nrrdInteger(field->text);
+    const auto bytes = integerOf(field->text);
     if (!bytes || *bytes < -1) {
       fields.fail(*field, inQuotes(field->text) + " is no count of bytes", "write a number from 0 on, or -1");
     }
-    if (*bytes == -1 && data.encoding != NrrdEncoding::kRaw) {
+    if (*bytes == -1 && data.packing != Packing::kNone) {
       fields.fail(*field, "-1 is for raw data only: the end of compressed data is not known",
                   "write the count of bytes");
     }
@@ -121,17 +119,12 @@ void readSkips(const NrrdFields& fields, NrrdData& data) {
   }
 }
 
-std::string besideHeader(const std::string& header_path, const std::string& name) {
-  const std::filesystem::path path(name);
-  return path.is_absolute() ? name : (std::filesystem::path(header_path).parent_path() / path).string();
-}
-
 // "PATTERN MIN MAX STEP [SUBDIM]"; returns the subdimension, 0 if there is none.
 std::uint64_t readPattern(const NrrdFields& fields, const NrrdField& field, const std::vector<std::string>& words,
-                          NrrdData& data) {
+                          SampleFiles& data) {
   constexpr std::int64_t kMost = std::int64_t{1} << 50;  // far from any overflow below
-  const auto min = nrrdInteger(words[1]), max = nrrdInteger(words[2]), step = nrrdInteger(words[3]);
-  const auto subdimension = words.size() == 5 ? nrrdCount(words[4]) : std::optional<std::uint64_t>(0);
+  const auto min = integerOf(words[1]), max = integerOf(words[2]), step = integerOf(words[3]);
+  const auto subdimension = words.size() == 5 ? countOf(words[4]) : std::optional<std::uint64_t>(0);
   const auto small = [](const auto& number) { return number && *number > -kMost && *number < kMost; };
   const bool ok = small(min) && small(max) && small(step) && *step != 0 && (*max - *min) / *step >= 0 && subdimension &&
                   ((*max >= *min) == (*step > 0) || *max == *min) && NumberPattern::parse(words[0]);
@@ -167,17 +160,17 @@ void checkFileCount(const NrrdFields& fields, const NrrdField& field, const Nrrd
       "correct \"sizes\" or \"data file\"");
 }
 
-void readDataFiles(const NrrdFields& fields, const NrrdAxes& axes, NrrdData& data) {
+void readDataFiles(const NrrdFields& fields, const NrrdAxes& axes, SampleFiles& data) {
   const NrrdField* field = fields.find("data file");
   if (field == nullptr) {
-    data.attached_at = fields.header_bytes;
+    data.begin = fields.header_bytes;
     return;
   }
   data.attached = false;
-  const auto words = nrrdWords(field->text);
+  const auto words = wordsOf(field->text);
   if (words.empty()) fields.fail(*field, "no file is named", "write the data file's name");
   if (words[0] == "LIST") {
-    const auto subdimension = words.size() == 2 ? nrrdCount(words[1]) : std::optional<std::uint64_t>(0);
+    const auto subdimension = words.size() == 2 ? countOf(words[1]) : std::optional<std::uint64_t>(0);
     if (!subdimension || words.size() > 2 || fields.listed_files.empty()) {
       fields.fail(*field, "expected \"LIST\" and then one file name a line", "correct \"data file\"");
     }
@@ -192,83 +185,36 @@ void readDataFiles(const NrrdFields& fields, const NrrdAxes& axes, NrrdData& dat
   }
 }
 
-// The samples' bytes must be there: exactly for raw data; deflate makes at most 1032 bytes of one.
-void checkDataFile(const std::string& header_path, const NrrdData& data, std::uint64_t k) {
-  const InputFile file(data.fileName(header_path, k));
-  const std::uint64_t begin = nrrdDataOffset(file, data);
-  const std::uint64_t held = file.size() - std::min(begin, file.size());
-  const bool gzip = data.encoding == NrrdEncoding::kGzip;
-  constexpr std::uint64_t kMostOfOneByte = 1032;
-  if (gzip ? data.file_bytes / kMostOfOneByte > held : data.file_bytes > held) {
-    throw Error(FaultCode::kBadInput, file.path(), "byte " + std::to_string(file.size()),
-                "the file is short: it holds " + std::to_string(held) + (gzip ? " compressed" : "") +
-                    " bytes of samples, but the header's sizes ask for " + std::to_string(data.file_bytes),
-                "copy or make the file again, or correct the sizes");
-  }
-  if (!gzip && data.attached && data.byte_skip != -1 && held > data.file_bytes) {
-    throw Error(FaultCode::kBadInput, file.path(), "byte " + std::to_string(begin + data.file_bytes),
-                "the file goes on for " + std::to_string(held - data.file_bytes) +
-                    " bytes after the samples that the header's sizes ask for",
-                "correct \"sizes\" or \"type\" in the header");
-  }
-}
-
 }  // namespace
 
-std::string NrrdData::fileName(const std::string& header_path, std::uint64_t k) const {
-  if (attached) return header_path;
-  if (pattern.empty()) return names[static_cast<std::size_t>(k)];
-  return besideHeader(header_path,
-                      NumberPattern::parse(pattern)->name(pattern_min + static_cast<std::int64_t>(k) * pattern_step));
-}
-
-std::uint64_t nrrdDataOffset(const InputFile& file, const NrrdData& data) {
-  if (data.byte_skip == -1) return file.size() - std::min(file.size(), data.file_bytes);
-  std::uint64_t at = data.attached ? data.attached_at : 0;
-  std::vector<char> buffer(std::size_t{1} << 16);
-  for (std::uint64_t lines = 0; lines < data.line_skip;) {
-    const std::size_t got = file.readSome(at, std::as_writable_bytes(std::span(buffer)));
-    if (got == 0) {
-      throw Error(FaultCode::kBadInput, file.path(), "byte " + std::to_string(file.size()),
-                  "the file ends after " + std::to_string(lines) + " lines, but \"line skip\" is " +
-                      std::to_string(data.line_skip),
-                  "correct \"line skip\" in the header");
-    }
-    const std::string_view text(buffer.data(), got);
-    std::size_t used = 0;
-    for (; lines < data.line_skip; ++lines) {
-      const std::size_t end = text.find('\n', used);
-      if (end == std::string_view::npos) break;
-      used = end + 1;
-    }
-    at += lines < data.line_skip ? got : used;
-  }
-  // In compressed data bytes are skipped after decoding.
-  return data.encoding == NrrdEncoding::kRaw ? at + static_cast<std::uint64_t>(data.byte_skip) : at;
-}
-
-NrrdHeader readNrrdHeader(const std::string& path) {
-  const InputFile file(path);
-  const NrrdFields fields = readNrrdFields(file);
+NrrdHeader nrrdHeaderOf(const NrrdFields& fields, Centering centering) {
   NrrdHeader header;
-  header.path = path;
-  const NrrdAxes axes = readNrrdAxes(fields);
+  header.path = fields.path;
+  const NrrdAxes axes = readNrrdAxes(fields, centering);
   header.grid.dims = axes.dims;
   header.grid.type = readType(fields);
   header.grid.index_to_world = axes.index_to_world;
   header.has_frame_axis = axes.has_frame_axis;
   header.frames = axes.frames;
 
-  NrrdData& data = header.data;
-  data.encoding = readEncoding(fields);
+  SampleFiles& data = header.data;
+  data.header_path = fields.path;
+  data.packing = readEncoding(fields);
   data.swap_bytes = readSwap(fields, header.grid.type);
   const std::uint64_t total = totalBytes(fields, axes, header.grid.type);
   readSkips(fields, data);
   readDataFiles(fields, axes, data);
   data.file_bytes = total / data.files;
-  for (std::uint64_t k = 0; k < data.files; ++k) checkDataFile(path, data, k);
+  return header;
+}
 
-  header.times = readNrrdTimes(fields, axes);
+NrrdHeader readNrrdHeader(const std::string& path, Centering centering) {
+  const InputFile file(path);
+  ByteStream bytes(file);
+  const NrrdFields fields = readNrrdFields(bytes, path);
+  NrrdHeader header = nrrdHeaderOf(fields, centering);
+  for (std::uint64_t k = 0; k < header.data.files; ++k) checkSampleFile(header.data, k);
+  header.times = readNrrdTimes(fields, readNrrdAxes(fields, centering));
   return header;
 }
 

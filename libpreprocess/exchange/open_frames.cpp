@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -9,6 +11,7 @@
 #include "libpreprocess/exchange/file_series.h"
 #include "libpreprocess/exchange/frame_series.h"
 #include "libpreprocess/exchange/frame_source.h"
+#include "libpreprocess/exchange/frame_stream.h"
 #include "libpreprocess/exchange/read_vti.h"
 
 namespace tet4d::exchange {
@@ -77,11 +80,17 @@ std::unique_ptr<FrameSource> openPvd(const std::string& path, FrameSourceOptions
 
 std::unique_ptr<FrameSource> openFrames(const std::vector<std::string>& inputs, const FrameSourceOptions& options) {
   if (inputs.empty()) throw Error(FaultCode::kUsage, "", "", "no frames are given", "name the frames' files");
-  if (inputs.size() > 1) return openFileSeries(inputs, options);
+  if (inputs.size() > 1) {
+    if (std::find(inputs.begin(), inputs.end(), "-") != inputs.end()) {
+      throw Error(FaultCode::kUsage, "-", "", "standard input brings all frames or none", "give \"-\" alone, or files");
+    }
+    return openFileSeries(inputs, options);
+  }
   const std::string& input = inputs.front();
+  if (input == "-") return openFrameStream(STDIN_FILENO, "standard input", options);
   std::error_code ignored;
   if (fs::is_directory(input, ignored)) {
-    const auto files = filesOfDirectory(input);
+    const auto files = filesOfDirectory(input, options.file.raw.has_value());
     return files.size() == 1 ? openFileMovie(openFrameFile(files.front(), options.file), options)
                              : openFileSeries(files, options);
   }

@@ -1,13 +1,11 @@
 // NRRD files as frames: the header first, then any layers into the caller's buffer.
 //
-// Raw data are read where they stand. Gzip data are decoded from front to back: frames read in order cost one pass, a
-// frame before the last one read costs a new start. Neither holds more than a fixed buffer.
+// Layers read in growing order cost one pass over the data, a layer before the last one read of gzip data a new start.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
+#include <string>
 
 #include "libpreprocess/exchange/nrrd_header.h"
 
@@ -16,20 +14,17 @@ namespace tet4d::exchange {
 class NrrdFile final : public FrameFile {
  public:
   // Reads the header. Throws as readNrrdHeader().
-  explicit NrrdFile(const std::string& path);
-  ~NrrdFile() override;
+  explicit NrrdFile(const std::string& path, const FrameFileOptions& options = {});
 
   const NrrdHeader& header() const override { return header_; }
   // The checksum of a gzip stream is seen with its last layer.
   void readLayers(std::uint64_t frame, std::uint64_t z_begin, std::uint64_t z_end,
                   std::span<std::byte> samples) override;
-  void close() override;
+  void close() override { samples_.close(); }
 
  private:
-  struct OpenFile;
-  OpenFile& open(std::uint64_t file, std::uint64_t at);
   NrrdHeader header_;
-  std::unique_ptr<OpenFile> open_;
+  SampleReader samples_;
 };
 
 }  // namespace tet4d::exchange

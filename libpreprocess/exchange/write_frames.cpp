@@ -59,7 +59,7 @@ std::string nrrdHeader(const GridInfo& grid, const std::vector<double>& times) {
   std::string list("times:=");
   for (const double time : times) list.append(numberText(time)).append(" ");
   list.back() = '\n';
-  if (list.size() <= kMaxNrrdLineBytes) return text.append(list).append("\n");
+  if (list.size() <= kMaxHeaderLineBytes) return text.append(list).append("\n");
   if (areEven(times)) return text.append("\n");
   throw Error(FaultCode::kUsage, "", "", std::to_string(times.size()) + " uneven times are too many for a NRRD header",
               "write fewer frames, or .t4g");

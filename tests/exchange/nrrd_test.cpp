@@ -257,7 +257,9 @@ TEST(Nrrd, KeysAndTheirEscapes) {
   const Scratch scratch;
   const std::string path = scratch.write("a.nrrd", smallFile("note:=a: b\\nc\\\\\ntime:= 0.125\n"));
   EXPECT_EQ(NrrdFile(path).header().times, std::vector<double>{0.125});
-  const NrrdFields fields = readNrrdFields(InputFile(path));
+  const InputFile text(path);
+  ByteStream bytes(text);
+  const NrrdFields fields = readNrrdFields(bytes, path);
   EXPECT_EQ(fields.key_values.at("note"), "a: b\nc\\");
 }
 
