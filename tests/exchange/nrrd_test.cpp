@@ -253,6 +253,25 @@ TEST(Nrrd, AScalarAxisInFrontIsNoSpace) {
   EXPECT_EQ(five.header().frames, 3u);
 }
 
+TEST(Nrrd, TheCallersCenteringIsForHeadersThatTellNone) {
+  const Scratch scratch;
+  const auto originOf = [&](const std::string& lines, Centering centering) {
+    FrameFileOptions options;
+    options.centering = centering;
+    const std::string text = smallHeader() + lines + "\n" + sampleText(SampleType::kF32, 12, false);
+    return NrrdFile(scratch.write("a.nrrd", text), options).header().grid.index_to_world.origin;
+  };
+  using Origin = std::array<double, 3>;
+  const std::string spaced = "spacings: 2 4 8\naxis mins: 1 1 1\n";
+  EXPECT_EQ(originOf(spaced, Centering::kUntold), (Origin{1, 1, 1}));
+  EXPECT_EQ(originOf(spaced, Centering::kNode), (Origin{1, 1, 1}));
+  EXPECT_EQ(originOf(spaced, Centering::kCell), (Origin{2, 3, 5}));
+  EXPECT_EQ(originOf(spaced + "centerings: node ??? none\n", Centering::kCell), (Origin{1, 3, 5}));
+  EXPECT_EQ(originOf(spaced + "centerings: cell cell cell\n", Centering::kNode), (Origin{2, 3, 5}));
+  const std::string directed = "space directions: (2,0,0) (0,4,0) (0,0,8)\nspace origin: (1,1,1)\n";
+  EXPECT_EQ(originOf(directed, Centering::kCell), (Origin{1, 1, 1})) << "the origin is the first sample";
+}
+
 TEST(Nrrd, KeysAndTheirEscapes) {
   const Scratch scratch;
   const std::string path = scratch.write("a.nrrd", smallFile("note:=a: b\\nc\\\\\ntime:= 0.125\n"));
