@@ -88,14 +88,13 @@ Result<Writer> Writer::create(const std::string& path, const GridHeader& header,
                               paged::Codec codec, bool force) {
   const auto unfit = [&](const char* what) { return Fault{FaultCode::kUsage, path, "section GHDR", what, ""}; };
   if (const char* what = checkHeader(header)) return unfit(what);
-  if (Status s = page_layout::checkTimes(times, times.size(), path); !s.ok()) return s.fault();
+  if (Status s = page_layout::checkTimes(times, times.size(), path); !times.empty() && !s.ok()) return s.fault();
   auto file = container::Writer::create(path, kPayload, kVersion, force);
   if (!file.ok()) return file.fault();
   Writer writer;
   writer.file_ = std::make_unique<container::Writer>(std::move(file).value());
   writer.pages_ = std::make_unique<paged::PageWriter>(*writer.file_, codec);
   writer.header_ = header;
-  writer.header_.frames = times.size();
   writer.times_.assign(times.begin(), times.end());
   if (Status status = writer.pages_->begin(); !status.ok()) return status.fault();
   return writer;
@@ -112,13 +111,20 @@ Status Writer::addFrame(std::span<const std::byte> samples) {
   return pages_->add(samples, entryOf(header_, k));
 }
 
+Status Writer::addFrame(std::span<const std::byte> samples, double time) {
+  times_.push_back(time);
+  return addFrame(samples);
+}
+
 Status Writer::close(const std::string& provenance_json) {
+  if (Status s = page_layout::checkTimes(times_, times_.size(), file_->path()); !s.ok()) return s;
   if (pages_->entries().size() != times_.size()) {
     return Fault{FaultCode::kUsage, file_->path(), "section TIME",
                  std::to_string(pages_->entries().size()) + " frames for " + std::to_string(times_.size()) + " times",
                  "give one time a frame"};
   }
   if (Status status = pages_->end(); !status.ok()) return status;
+  header_.frames = times_.size();
   if (Status s = file_->add<GridHeader>(kHeader, container::kSectionRequired, {&header_, 1}); !s.ok()) return s;
   if (Status s = file_->add<double>(kTimes, container::kSectionRequired, times_); !s.ok()) return s;
   if (Status s = file_->add<char>(container::kProvenance, 0, provenance_json); !s.ok()) return s;

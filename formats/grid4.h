@@ -57,10 +57,13 @@ class File {
 // Streams frames into a .t4g.
 class Writer {
  public:
+  // times: one per frame, or none: each then comes with its frame.
   static Result<Writer> create(const std::string& path, const GridHeader& header, std::span<const double> times,
                                paged::Codec codec, bool force);
   // Frame by frame, in order; exactly frameBytes each.
   Status addFrame(std::span<const std::byte> samples);
+  // The same, of frames whose count is not known before; times grow.
+  Status addFrame(std::span<const std::byte> samples, double time);
   Status close(const std::string& provenance_json);
 
  private:

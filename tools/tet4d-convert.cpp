@@ -69,7 +69,9 @@ int main(int argc, char** argv) {
       .example("tet4d-convert dam.t4h --at 20f --normals --velocity -o dam.glb", "with normals and how fast it moves")
       .example("tet4d-convert dam.t4h -o dam.vtu", "the whole hypermesh, tetrahedra with a point array t")
       .example("tet4d-convert alpha_*.nrrd -o alpha.t4g", "frames into one file")
-      .positional("FILE", "a hypermesh (.t4h), or frames in time order", &options.inputs)
+      .example("tet4d-convert scan.mha --crop 0:255,0:255,20:80 --time-stride 2 -o part.nrrd", "a part of a sequence")
+      .positional("FILE", "a hypermesh (.t4h), or frames of a volume in time order, as tet4d-mc takes them",
+                  &options.inputs)
       .heading("Slices")
       .option("--at", "T", "slice at a world time, or at a frame with the suffix f", &options.at)
       .option("--times", "A:B:STEP", "slices from A to B, both included; f as in --at", &options.times)
@@ -79,13 +81,9 @@ int main(int argc, char** argv) {
       .option("--columns", "NAME,...", "columns of the hypermesh to interpolate: names, all or none", &options.columns)
       .flag("--velocity", "write the velocity along the normal: the column, else computed from the tetrahedra",
             &options.velocity)
-      .heading("Frames")
-      .flag("--allow-gaps", "accept holes in the files' numbering", &options.allow_gaps)
-      .option("--frame-times", "T,T,...", "world times of the frames, instead of the files'", &options.frame_times)
-      .option("--array", "NAME", "which array of VTK files, a component as NAME:0; the active or only scalar otherwise",
-              &options.array)
-      .option("--page-codec", "CODEC", "how a .t4g's frames are stored", cli::Choice{&options.codec, {"raw", "zstd"}})
       .heading("Options")
+      .option("--page-codec", "CODEC", "how a .t4g's frames are stored", cli::Choice{&options.codec, {"raw", "zstd"}})
       .common({cli::kOutputRequired, cli::kForce, cli::kStats, cli::kDepfile});
+  frames::addFrameOptions(command, options.frames, "--frame-times");
   return cli::run(argc, argv, command, [&](cli::Session& session) { return body(session, options); });
 }

@@ -1,20 +1,16 @@
 // tet4d-mc: frames of a volume → hypermesh. Ponchio & Hormann 2008, sec. 4.
-#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "libpreprocess/error.h"
 #include "libpreprocess/exchange/frame_source.h"
 #include "libpreprocess/hypermesh/marching_hypercubes.h"
 #include "tools/common/cli.h"
+#include "tools/frames/frame_options.h"
 
 namespace {
 
@@ -23,9 +19,8 @@ using namespace tet4d;
 struct Arguments {
   std::vector<std::string> frames;
   double iso = 0;
-  std::string split = "hull", nan = "outside", codec = "raw", times;
-  bool allow_gaps = false;
-  std::string array;
+  std::string split = "hull", nan = "outside", codec = "raw";
+  frames::FrameOptions frame_options;
 };
 
 std::string hex(std::uint64_t value) {
@@ -49,42 +44,6 @@ hypermesh::Options optionsOf(const Arguments& arguments) {
                                            : hypermesh::NanRule::kOutside;
   options.page_codec = arguments.codec == "zstd" ? paged::Codec::kZstd : paged::Codec::kRaw;
   return options;
-}
-
-// The numbers of a --times list: separated by commas or white space.
-std::vector<double> parseTimes(std::string_view text, const std::string& file) {
-  std::vector<double> times;
-  const auto isSeparator = [](char c) { return c == ',' || c == ' ' || c == '\t' || c == '\n' || c == '\r'; };
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (at != end) {
-    if (isSeparator(*at)) {
-      ++at;
-      continue;
-    }
-    double time = 0;
-    const auto [next, error] = std::from_chars(at, end, time);
-    if (error != std::errc{} || (next != end && !isSeparator(*next))) {
-      const std::string word(at, std::find_if(at, end, isSeparator));
-      throw Error(file.empty() ? FaultCode::kUsage : FaultCode::kBadInput, file,
-                  file.empty() ? "option --times" : "entry " + std::to_string(times.size() + 1),
-                  "\"" + word + "\" is no number",
-                  "give one world time a frame, or the name of a file that holds them");
-    }
-    times.push_back(time);
-    at = next;
-  }
-  return times;
-}
-
-// --times: the name of a file, or the times themselves.
-std::vector<double> timesOf(const std::string& argument, cli::Session& session) {
-  if (argument.empty() || !std::filesystem::is_regular_file(argument)) return parseTimes(argument, "");
-  session.dependsOn(argument);
-  std::ifstream in(argument, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in) throw Error(FaultCode::kIo, argument, "", "cannot be read", "check its permissions");
-  return parseTimes(text, argument);
 }
 
 void printPlan(exchange::FrameSource& source, const hypermesh::Options& options) {
@@ -124,39 +83,25 @@ void report(const Arguments& arguments, const hypermesh::Stats& stats, cli::Sess
                " hypercubes crossed");
 }
 
-void nameDependencies(const Arguments& arguments, const exchange::FrameSource& source, cli::Session& session) {
-  std::error_code ignored;
-  for (const std::string& input : arguments.frames)
-    if (std::filesystem::is_regular_file(input, ignored)) session.dependsOn(input);
-  // A directory or a pattern stands for the files its frames are called after.
-  if (arguments.frames.size() != 1 || std::filesystem::is_regular_file(arguments.frames[0], ignored)) return;
-  for (std::size_t k = 0; k < source.times().size(); ++k)
-    if (std::filesystem::is_regular_file(source.frameName(k), ignored)) session.dependsOn(source.frameName(k));
-}
-
 int extract(cli::Session& session, const Arguments& arguments) {
   if (session.options().output == "-") {
     throw Error(FaultCode::kUsage, "", "option --output", "a hypermesh cannot be written to a pipe",
                 "name a file: -o X.t4h");
   }
   cli::expectSuffix(session, ".t4h", "name it X.t4h; tet4d-convert makes .vtu, .ply and others of a .t4h");
-  if (std::find(arguments.frames.begin(), arguments.frames.end(), "-") != arguments.frames.end()) {
-    throw Error(FaultCode::kUsage, "", "FRAMES", "frames cannot be read from standard input yet", "give files");
-  }
-  exchange::FrameSourceOptions source_options;
-  source_options.file.array = arguments.array;
-  source_options.allow_gaps = arguments.allow_gaps;
-  source_options.times = timesOf(arguments.times, session);
-  const std::unique_ptr<exchange::FrameSource> source = exchange::openFrames(arguments.frames, source_options);
-  nameDependencies(arguments, *source, session);
+  const std::unique_ptr<exchange::FrameSource> source =
+      frames::openFrames(arguments.frames, arguments.frame_options, session);
   const hypermesh::Options options = optionsOf(arguments);
   if (session.options().dry_run) {
+    if (source->isStream()) {
+      throw Error(FaultCode::kUsage, "", "option --dry-run", "how many frames a stream has is known at its end only",
+                  "give files");
+    }
     printPlan(*source, options);
     return 0;
   }
   hypermesh::Writer writer =
-      unwrap(hypermesh::Writer::create(session.options().output, hypermesh::meshHeader(*source, options),
-                                       source->times(), {}, options.page_codec, session.options().force));
+      hypermesh::createWriter(session.options().output, *source, options, session.options().force);
   const hypermesh::Stats stats =
       hypermesh::buildHypermesh(*source, writer, options, session.executor(), session.memory(), session.progress());
   // One digest over all samples: files, one file of many frames and a stream then leave the same provenance.
@@ -174,25 +119,18 @@ int main(int argc, char** argv) {
   command.example("tet4d-mc frames/*.nrrd --iso 0.5 -o drop.t4h", "the surface where the field is 0.5, at all times")
       .example("tet4d-mc volume4d.nrrd --iso 128 --nan mask -o scan.t4h", "samples that are NaN leave holes")
       .example("tet4d-mc alpha_%04d.nrrd --iso 0.5 --times times.txt -o dam.t4h", "frames at times of your own")
-      .positional("FRAMES",
-                  "volumes in time order (.nrrd, .nhdr), a directory of them, a pattern such as a_%04d.nrrd, "
-                  "one 4D .nrrd, or a .t4g",
-                  &arguments.frames)
+      .example("tet4d-mc run.raw --size 64,64,64 --type f32 --iso 0.5 -o run.t4h", "raw frames behind each other")
+      .example("simulate | tet4d-mc - --iso 0.5 -o run.t4h", "NRRDs as they come, while the simulation runs")
+      .positional("FRAMES", frames::kFramesHelp, &arguments.frames)
       .option("--iso", "V", "isovalue: samples at or above it are inside", &arguments.iso, cli::kMustBeGiven)
       .option("--split", "WAY",
               "how a hypercube is cut: by convex hulls, or into 24 pentatopes (5 times the tetrahedra)",
               cli::Choice{&arguments.split, {"hull", "kuhn"}})
       .option("--nan", "RULE", "what a NaN is: outside, a hole (mask), or an error",
               cli::Choice{&arguments.nan, {"outside", "mask", "error"}})
-      // The file's own table holds the times, so provenance need not.
-      .option("--times", "TIMES",
-              "world times of the frames instead of the files' own: T,T,... or a file that holds them",
-              &arguments.times, cli::kKeepsResult | cli::kIsInput)
-      .option("--array", "NAME", "which array of VTK files, a component as NAME:0; the active or only scalar otherwise",
-              &arguments.array)
-      .flag("--allow-gaps", "accept a hole in the numbering of the files", &arguments.allow_gaps, cli::kKeepsResult)
-      .option("--page-codec", "CODEC", "how pages are stored", cli::Choice{&arguments.codec, {"raw", "zstd"}})
-      .common(
-          {cli::kOutputRequired, cli::kThreads, cli::kMemory, cli::kForce, cli::kDryRun, cli::kStats, cli::kDepfile});
+      .option("--page-codec", "CODEC", "how pages are stored", cli::Choice{&arguments.codec, {"raw", "zstd"}});
+  frames::addFrameOptions(command, arguments.frame_options);
+  command.common(
+      {cli::kOutputRequired, cli::kThreads, cli::kMemory, cli::kForce, cli::kDryRun, cli::kStats, cli::kDepfile});
   return cli::run(argc, argv, command, [&](cli::Session& session) { return extract(session, arguments); });
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libpreprocess/error.h"
-#include "libpreprocess/exchange/nrrd_fields.h"
+#include "libpreprocess/exchange/header_text.h"
 #include "libpreprocess/exchange/number_text.h"
 #include "libpreprocess/outofcore/output_file.h"
 
@@ -71,16 +71,17 @@ void writeGrid4(const std::string& path, FrameSource& frames, paged::Codec codec
                 const ProvenanceOf& provenance, outofcore::Progress& progress) {
   grid4::GridHeader header{};
   std::copy(frames.grid().dims.begin(), frames.grid().dims.end(), header.dims);
-  header.frames = frames.times().size();
   header.sample_type = static_cast<std::uint32_t>(frames.grid().type);
   header.index_to_world = frames.grid().index_to_world;
-  auto writer = unwrap(grid4::Writer::create(path, header, frames.times(), codec, force));
-  std::vector<std::byte> samples(static_cast<std::size_t>(frames.grid().voxels() * sampleBytes(frames.grid().type)));
+  const bool stream = frames.isStream();
+  auto writer =
+      unwrap(grid4::Writer::create(path, header, stream ? std::vector<double>{} : frames.times(), codec, force));
+  std::vector<std::byte> samples(static_cast<std::size_t>(frames.grid().frameBytes()));
   std::vector<std::uint64_t> digests;
-  progress.phase("write", header.frames);
-  for (std::size_t k = 0; k < header.frames; ++k) {
+  progress.phase("write", stream ? 0 : frames.times().size());
+  for (std::size_t k = 0; frames.hasFrame(k); ++k) {
     frames.readFrame(k, samples);
-    unwrap(writer.addFrame(samples));
+    unwrap(stream ? writer.addFrame(samples, frames.times()[k]) : writer.addFrame(samples));
     digests.push_back(container::xxh3(samples));
     progress.step(k + 1);
   }
@@ -89,13 +90,19 @@ void writeGrid4(const std::string& path, FrameSource& frames, paged::Codec codec
 
 void writeNrrd(const std::string& path, FrameSource& frames, bool force, outofcore::Progress& progress) {
   static_assert(std::endian::native == std::endian::little);
+  if (frames.isStream()) {
+    throw Error(FaultCode::kUsage, path, "",
+                "a NRRD begins with the count of its frames, which a stream tells at its end", "write a .t4g first");
+  }
   outofcore::OutputFile file(path, force);
   file.write(nrrdHeader(frames.grid(), frames.times()));
-  std::vector<std::byte> samples(static_cast<std::size_t>(frames.grid().voxels() * sampleBytes(frames.grid().type)));
+  std::vector<std::byte> layer(static_cast<std::size_t>(frames.grid().layerBytes()));
   progress.phase("write", frames.times().size());
   for (std::size_t k = 0; k < frames.times().size(); ++k) {
-    frames.readFrame(k, samples);
-    file.write(samples);
+    for (std::uint64_t z = 0; z < frames.grid().dims[2]; ++z) {
+      frames.readLayers(k, z, z + 1, layer);
+      file.write(layer);
+    }
     progress.step(k + 1);
   }
   file.commit();

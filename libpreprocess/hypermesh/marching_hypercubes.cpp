@@ -303,6 +303,7 @@ Stats Extraction::finish(std::size_t frames) {
 
 Stats Extraction::run() {
   read();
+  if (!source_.hasFrame(1)) refuseSingle(source_);
   read();
   usable_[0] = cellsWithoutNan(shape_, nanOf(0), nanOf(1));
   for (IsoPart& part : parts_) {

@@ -99,9 +99,9 @@ struct Plan {
   std::uint64_t most_output_bytes = 0;   // every cell the worst, uncompressed
 };
 
-// Checks that a hypermesh can be made: at least two frames (waits for a stream's second one) and two samples along
-// every axis, none above 2^22 (positions are f32), finite and different isovalues, fields on the same grid. Throws
-// Error{kBadInput, kUsage}.
+// Checks that a hypermesh can be made: at least two frames (of a stream one: the run waits for its second) and two
+// samples along every axis, none above 2^22 (positions are f32), finite and different isovalues, fields on the same
+// grid. Throws Error{kBadInput, kUsage}.
 void checkSource(exchange::FrameSource& source, const Options& options);
 
 // The header of the file to be written: kOnGrid, the source's map, the domain [0, dims - 1] x [0, frames - 1], wider by

@@ -89,14 +89,16 @@ void refuseFrames(const exchange::FrameSource& source, std::size_t frames) {
               "cut the sequence into parts");
 }
 
+void refuseSingle(const exchange::FrameSource& source) {
+  throw Error(FaultCode::kBadInput, source.times().empty() ? "" : source.frameName(0), "",
+              std::to_string(source.times().size()) + " frame; a hypermesh lies between frames and needs two at least",
+              "give more frames, or slice a single one with a 3D tool");
+}
+
 void checkSource(exchange::FrameSource& source, const Options& options) {
   checkIsovalues(options);
-  if (!source.hasFrame(0) || !source.hasFrame(1)) {
-    throw Error(
-        FaultCode::kBadInput, source.times().empty() ? "" : source.frameName(0), "",
-        std::to_string(source.times().size()) + " frame; a hypermesh lies between frames and needs two at least",
-        "give more frames, or slice a single one with a 3D tool");
-  }
+  // A stream's second frame comes when the first is read.
+  if (!source.hasFrame(0) || (!source.isStream() && !source.hasFrame(1))) refuseSingle(source);
   if (source.times().size() - 1 > kMaxIndex) refuseFrames(source, source.times().size());
   checkAxes(source, options);
   checkFields(source, options);

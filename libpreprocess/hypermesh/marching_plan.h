@@ -14,5 +14,7 @@ GridShape gridShape(const exchange::GridInfo& grid, const Options& options);
 std::size_t framesHeld(const Options& options);
 // Throws Error{kBadInput}: more frames than f32 frame numbers allow.
 [[noreturn]] void refuseFrames(const exchange::FrameSource& source, std::size_t frames);
+// Throws Error{kBadInput}: one frame, or none.
+[[noreturn]] void refuseSingle(const exchange::FrameSource& source);
 
 }  // namespace tet4d::hypermesh

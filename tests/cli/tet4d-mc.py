@@ -295,11 +295,4 @@ CASES = [
         "stderr": ["--output: 'out.vtu' does not end in .t4h, which is what tet4d-mc writes", "tet4d-convert"],
         "absent": ["out.vtu"],
     },
-    {
-        "name": "frames from standard input",
-        "run": ["tet4d-mc", "-", "--iso", "48.5", "-o", "x.t4h"],
-        "exit": 2,
-        "stderr": ["frames cannot be read from standard input yet", "give files"],
-        "absent": ["x.t4h"],
-    },
 ]

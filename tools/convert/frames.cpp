@@ -19,14 +19,14 @@ std::string hex(std::uint64_t value) {
 
 void convertFrames(cli::Session& session, const Options& options) {
   const std::string& output = session.options().output;
-  const std::string suffix = suffixOf(output);
+  const std::string suffix = output == "-" ? ".nrrd" : suffixOf(output);
   if (suffix != ".t4g" && suffix != ".nrrd") failUsage("frames cannot be written as \"" + output + "\"");
   if (options.wantsSlices() || !options.sliceOption().empty()) {
     failUsage(
         (options.wantsSlices() ? "--at and --times are" : options.sliceOption() + " is") + " for slices of a hypermesh",
         "make one first: tet4d-mc FRAMES --iso V -o X.t4h");
   }
-  const auto frames = exchange::openFrames(options.inputs, {options.allow_gaps, options.frame_times, {options.array}});
+  const auto frames = frames::openFrames(options.inputs, options.frames, session, "--frame-times");
   if (suffix == ".t4g") {
     const paged::Codec codec = options.codec == "zstd" ? paged::Codec::kZstd : paged::Codec::kRaw;
     const auto provenance = [&](std::uint64_t digest) {

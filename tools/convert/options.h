@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libpreprocess/error.h"
+#include "tools/frames/frame_options.h"
 
 namespace tet4d::convert {
 
@@ -18,9 +19,7 @@ struct Options {
   bool velocity = false;
   // Frames.
   std::string codec = "raw";
-  bool allow_gaps = false;
-  std::string array;
-  std::vector<double> frame_times;
+  frames::FrameOptions frames;
 
   bool wantsSlices() const { return !at.empty() || !times.empty(); }
   // The first option given that only slices have; empty if there is none.
@@ -34,7 +33,9 @@ struct Options {
 
 inline constexpr const char* kPossible =
     "possible are: .t4h to .vtu, .hyper; .t4h with --at to .ply, .vtp, .off, .obj, .stl, .glb; .t4h with --times "
-    "to a pattern such as %04d.ply or to .pvd; frames (.nrrd, .nhdr, .vti, .pvd, .t4g, a directory, a pattern) to .t4g, .nrrd";
+    "to a pattern such as %04d.ply or to .pvd; frames (.nrrd, .mha, .vti, .pvd, raw, .t4g, a directory, a pattern, -) "
+    "to "
+    ".t4g, .nrrd";
 
 [[noreturn]] inline void failUsage(const std::string& what, const std::string& remedy = kPossible) {
   throw Error(FaultCode::kUsage, "", "", what, remedy);

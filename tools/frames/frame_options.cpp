@@ -38,11 +38,13 @@ std::optional<exchange::RawLayout> rawLayoutOf(const FrameOptions& options) {
                                                 {"--skip", options.skip != 0}};
   if (options.size.empty()) {
     for (const auto& [option, is_given] : given) {
-      if (is_given) failUsage(option, "describes raw files, which need --size", "give --size X,Y,Z too, or leave it out");
+      if (is_given)
+        failUsage(option, "describes raw files, which need --size", "give --size X,Y,Z too, or leave it out");
     }
     return std::nullopt;
   }
-  if (options.type.empty()) failUsage("--size", "the type of the samples is not given", "add --type, such as --type f32");
+  if (options.type.empty())
+    failUsage("--size", "the type of the samples is not given", "add --type, such as --type f32");
   exchange::RawLayout layout;
   layout.dims = countsOf("--size", options.size, false);
   layout.type = *sampleTypeOfName(options.type);
@@ -87,6 +89,8 @@ void addFrameOptions(cli::Command& command, FrameOptions& options, const std::st
       .option(times_flag, "TIMES", "world times of the frames instead of the files' own: T,T,... or a file of them",
               &options.times, keeps | cli::kIsInput)
       .flag("--allow-gaps", "accept a hole in the numbering of the files", &options.allow_gaps, keeps)
+      .option("--array", "NAME", "which array of VTK files, a component as NAME:0; the active or only scalar otherwise",
+              &options.array)
       .option("--centering", "WHERE", "where samples sit, if a NRRD does not tell or files are raw (default node)",
               cli::Choice{&options.centering, {"node", "cell"}}, keeps)
       .option("--crop", "X0:X1,Y0:Y1,Z0:Z1", "a box of samples; both ends are included, one left out is the grid's",
@@ -112,6 +116,7 @@ std::unique_ptr<exchange::FrameSource> openFrames(const std::vector<std::string>
   source_options.allow_gaps = options.allow_gaps;
   source_options.times = givenTimes(options.times, times_flag, session);
   source_options.file.raw = rawLayoutOf(options);
+  source_options.file.array = options.array;
   if (!options.centering.empty()) {
     source_options.file.centering =
         options.centering == "cell" ? exchange::Centering::kCell : exchange::Centering::kNode;

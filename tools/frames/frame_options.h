@@ -15,16 +15,18 @@ namespace tet4d::frames {
 struct FrameOptions {
   std::string times;  // T,T,… or a file of times
   bool allow_gaps = false;
-  std::string centering;                                   // node, cell
-  std::string size, type, byte_order, spacing, origin;     // of raw files
-  std::uint64_t skip = 0;                                  // bytes, of raw files
-  std::string crop, stride, range;                         // range: --frames
+  std::string array;                                    // of VTK files
+  std::string centering;                                // node, cell
+  std::string size, type, byte_order, spacing, origin;  // of raw files
+  std::uint64_t skip = 0;                               // bytes, of raw files
+  std::string crop, stride, range;                      // range: --frames
   std::uint64_t time_stride = 1;
 };
 
 // What FRAMES may be, for the help of a positional.
 inline constexpr const char* kFramesHelp =
-    "volumes in time order (.nrrd, .nhdr, .mha, .mhd, raw with --size), a directory of them, a pattern such as "
+    "volumes in time order (.nrrd, .nhdr, .mha, .mhd, .vti, .pvd, raw with --size), a directory of them, a pattern "
+    "such as "
     "a_%04d.nrrd, one file of many frames, a .t4g, or - for standard input";
 
 // Adds the options, under headings of their own. `times_flag` is what the program calls the frames' times. Options that
