@@ -179,7 +179,6 @@ TEST(GridWriter, RefusesWhatReadersWould) {
   bad = good;
   bad.index_to_world.axes[2] = {0, 0, 0};
   EXPECT_TRUE(refused(bad, times));
-  EXPECT_TRUE(refused(good, {}));
   EXPECT_TRUE(refused(good, {0, 0}));
   EXPECT_TRUE(refused(good, {0, std::numeric_limits<double>::infinity()}));
   EXPECT_TRUE(scratch.names().empty());
@@ -191,6 +190,31 @@ TEST(GridWriter, RefusesWhatReadersWould) {
   const Status early = writer.value().close("{}");
   ASSERT_FALSE(early.ok()) << "a frame is missing";
   EXPECT_EQ(early.fault().file, path);
+}
+
+TEST(GridWriter, TimesMayComeWithTheFrames) {
+  Scratch scratch;
+  const std::string path = scratch.path("g.t4g");
+  grid4::GridHeader header{};
+  header.dims[0] = header.dims[1] = header.dims[2] = 2;
+  header.sample_type = 1;
+  const std::vector<std::byte> samples(8, std::byte{7});
+  const auto write = [&](const std::vector<double>& times) {
+    auto writer = grid4::Writer::create(path, header, {}, paged::Codec::kRaw, true);
+    if (!writer.ok()) return false;
+    for (const double time : times) {
+      if (!writer.value().addFrame(samples, time).ok()) return false;
+    }
+    return writer.value().close("{}").ok();
+  };
+  EXPECT_FALSE(write({})) << "no frame has come";
+  EXPECT_FALSE(write({1, 1}));
+  EXPECT_TRUE(scratch.names().empty());
+  ASSERT_TRUE(write({-1, 0.5, 7}));
+  const auto file = grid4::File::open(path);
+  ASSERT_TRUE(file.ok());
+  EXPECT_TRUE(std::ranges::equal(file.value().times(), std::vector<double>{-1, 0.5, 7}));
+  EXPECT_TRUE(file.value().verify().ok());
 }
 
 TEST(HypermeshWriter, RefusesWhatReadersWould) {
