@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "libpreprocess/error.h"
-#include "libpreprocess/exchange/nrrd_fields.h"
+#include "libpreprocess/exchange/header_text.h"
 #include "libpreprocess/exchange/number_text.h"
 #include "libpreprocess/exchange/vtk_array.h"
 #include "libpreprocess/exchange/vtk_selection.h"
@@ -31,11 +31,11 @@ struct Extent {
 Extent extentOf(const VtkDocument& document, const XmlElement& element, std::string_view attribute) {
   constexpr std::int64_t kMost = std::int64_t{1} << 31;
   const std::string& text = document.need(element, attribute);
-  const auto words = nrrdWords(text);
+  const auto words = wordsOf(text);
   Extent extent;
   bool good = words.size() == 6;
   for (std::size_t axis = 0; good && axis < 3; ++axis) {
-    const auto first = nrrdInteger(words[2 * axis]), last = nrrdInteger(words[2 * axis + 1]);
+    const auto first = integerOf(words[2 * axis]), last = integerOf(words[2 * axis + 1]);
     good = first && last && *first >= -kMost && *last <= kMost && *first <= *last;
     if (good) extent.first[axis] = *first, extent.last[axis] = *last;
   }
@@ -294,7 +294,7 @@ std::vector<PvdStep> readPvd(const std::string& path) {
   for (const XmlElement& element : document.dataset().children) {
     if (element.name != "DataSet") continue;
     const std::string& text = document.need(element, "timestep");
-    const auto time = nrrdNumber(text);
+    const auto time = numberOf(text);
     if (!time || !std::isfinite(*time)) {
       document.fail(element, "timestep is " + inQuotes(text) + ", expected a finite number", "correct the time");
     }

@@ -14,7 +14,7 @@
 
 #include "libpreprocess/error.h"
 #include "libpreprocess/exchange/byte_order.h"
-#include "libpreprocess/exchange/nrrd_fields.h"
+#include "libpreprocess/exchange/header_text.h"
 #include "libpreprocess/exchange/number_text.h"
 #include "libpreprocess/exchange/vtk_bytes.h"
 

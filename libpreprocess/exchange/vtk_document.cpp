@@ -11,7 +11,7 @@
 #include <type_traits>
 
 #include "libpreprocess/error.h"
-#include "libpreprocess/exchange/nrrd_fields.h"
+#include "libpreprocess/exchange/header_text.h"
 
 namespace tet4d::exchange {
 namespace {
@@ -247,7 +247,7 @@ const std::string& VtkDocument::need(const XmlElement& element, std::string_view
 
 std::uint64_t VtkDocument::needCount(const XmlElement& element, std::string_view attribute) const {
   const std::string& text = need(element, attribute);
-  if (const auto count = nrrdCount(text)) return *count;
+  if (const auto count = countOf(text)) return *count;
   fail(element, std::string(attribute) + " is " + inQuotes(text) + ", expected a whole number from 0 on",
        "write the file again");
 }
@@ -257,12 +257,12 @@ std::vector<double> VtkDocument::numbers(const XmlElement& element, std::string_
   const std::string* text = element.attribute(attribute);
   if (text == nullptr) return defaults;
   std::vector<double> values;
-  for (const std::string& word : nrrdWords(*text)) {
-    const auto value = nrrdNumber(word);
+  for (const std::string& word : wordsOf(*text)) {
+    const auto value = numberOf(word);
     if (!value || !std::isfinite(*value)) break;
     values.push_back(*value);
   }
-  if (values.size() == count && nrrdWords(*text).size() == count) return values;
+  if (values.size() == count && wordsOf(*text).size() == count) return values;
   fail(element,
        std::string(attribute) + " is " + inQuotes(*text) + ", expected " + std::to_string(count) + " finite numbers",
        "write the file again");

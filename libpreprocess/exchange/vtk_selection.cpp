@@ -4,7 +4,7 @@
 #include <array>
 
 #include "libpreprocess/error.h"
-#include "libpreprocess/exchange/nrrd_fields.h"
+#include "libpreprocess/exchange/header_text.h"
 #include "libpreprocess/exchange/vtk_array.h"
 #include "libpreprocess/nearest.h"
 
@@ -70,7 +70,7 @@ VtkSelection selectDefault(const VtkDocument& document, const XmlElement& piece,
 std::pair<std::string, std::optional<std::uint64_t>> splitComponent(const std::string& name) {
   const std::size_t colon = name.rfind(':');
   if (colon == std::string::npos || colon == 0) return {name, std::nullopt};
-  const auto component = nrrdCount(std::string_view(name).substr(colon + 1));
+  const auto component = countOf(std::string_view(name).substr(colon + 1));
   if (!component) return {name, std::nullopt};
   return {name.substr(0, colon), component};
 }

@@ -154,7 +154,7 @@ CASES = [
         "run": ["tet4d-mc", "a.raw", "--iso", "1", "-o", "x.t4h"],
         "prepare": {"a.raw": "0" * 24},
         "exit": 3,
-        "stderr": ["a.raw", ".nrrd, .nhdr, .mha, .mhd, .vti", "--size X,Y,Z and --type"],
+        "stderr": ["a.raw", ".nrrd, .nhdr, .vti, .mha, .mhd", "--size X,Y,Z and --type"],
     },
     {
         "name": "a raw file of another size names the bytes",
