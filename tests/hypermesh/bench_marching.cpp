@@ -43,9 +43,7 @@ class Dropped final : public hypermesh::PageSink {
   void setTimes(std::span<const double>, float) override {}
 };
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 int bench(const std::vector<std::string>& words) {
   hypermesh::Options options;
@@ -72,10 +70,11 @@ int bench(const std::vector<std::string>& words) {
     const std::clock_t cpu = std::clock();
     const hypermesh::Stats stats = hypermesh::buildHypermesh(source, sink, options, executor, memory, progress);
     const double wall = seconds() - begin, cpu_s = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
-    std::printf("{\"threads\": %zu, \"tets\": %llu, \"samples\": %llu, \"seconds_wall\": %.6f, \"seconds_cpu\": %.6f, "
-                "\"tets_per_s\": %.0f, \"samples_per_s\": %.0f}\n",
-                threads, static_cast<unsigned long long>(stats.tets), static_cast<unsigned long long>(stats.voxels),
-                wall, cpu_s, static_cast<double>(stats.tets) / wall, static_cast<double>(stats.voxels) / wall);
+    std::printf(
+        "{\"threads\": %zu, \"tets\": %llu, \"samples\": %llu, \"seconds_wall\": %.6f, \"seconds_cpu\": %.6f, "
+        "\"tets_per_s\": %.0f, \"samples_per_s\": %.0f}\n",
+        threads, static_cast<unsigned long long>(stats.tets), static_cast<unsigned long long>(stats.voxels), wall,
+        cpu_s, static_cast<double>(stats.tets) / wall, static_cast<double>(stats.voxels) / wall);
   }
   return 0;
 }
