@@ -38,6 +38,7 @@ ExtractedMesh extractTo(const std::string& path, exchange::FrameSource& source, 
   const File file = unwrap(File::open(path));
   unwrap(file.verify());
   mesh.header = file.header();
+  mesh.times.assign(file.times().begin(), file.times().end());
   mesh.columns.resize(file.columns().size());
   for (std::size_t k = 0; k < file.geometryPages(); ++k) {
     const GatheredPage page = unwrap(file.gather(k));

@@ -14,6 +14,7 @@ namespace tet4d::hypermesh::testing {
 struct ExtractedMesh {
   Stats stats;
   MeshHeader header{};
+  std::vector<double> times;
   std::vector<Vec4f> vertices;
   std::vector<Tet> tets;
   std::vector<std::array<std::uint64_t, 2>> pages;  // owned vertices, tets
