@@ -1,5 +1,5 @@
-// Stiff cases of what happens in time and at the walls: births, merges, splits and deaths inside one step, noise, walls,
-// times far apart.
+// Stiff cases of what happens in time and at the walls: births, merges, splits and deaths inside one step, noise,
+// walls, times far apart.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,9 +27,9 @@ MemoryFrames<float> ballsPerFrame(std::vector<std::vector<Ball>> frames) {
   return {{16, 10, 10}, frames.size(), [=](auto x, auto y, auto z, auto k) {
             double value = -10;
             for (const Ball& ball : frames[k]) {
-              value = std::max(value, ball.radius - std::hypot(static_cast<double>(x) - ball.x,
-                                                               static_cast<double>(y) - ball.y,
-                                                               static_cast<double>(z) - ball.z));
+              value = std::max(
+                  value, ball.radius - std::hypot(static_cast<double>(x) - ball.x, static_cast<double>(y) - ball.y,
+                                                  static_cast<double>(z) - ball.z));
             }
             return static_cast<float>(value);
           }};
@@ -62,9 +62,8 @@ TEST(MarchingEventsStiff, MergesAndSplitsInsideOneStep) {
 
 TEST(MarchingEventsStiff, WhiteNoiseStaysBelowTheWorstCell) {
   std::mt19937 random(3);
-  MemoryFrames<std::uint8_t> source({12, 11, 10}, 5, [&](auto, auto, auto, auto) {
-    return static_cast<std::uint8_t>(random() >> 24);
-  });
+  MemoryFrames<std::uint8_t> source({12, 11, 10}, 5,
+                                    [&](auto, auto, auto, auto) { return static_cast<std::uint8_t>(random() >> 24); });
   const ExtractedMesh mesh = extract(source, {.iso = 127.5});
   const std::uint64_t cells = std::uint64_t{11} * 10 * 9 * 4;
   EXPECT_LE(mesh.tets.size(), 24 * cells);
@@ -119,7 +118,8 @@ TEST(MarchingEventsStiff, SpacingsFarApartKeepTheMesh) {
   const ExtractedMesh stretched = extract(source, {.iso = 0});
   EXPECT_EQ(stretched.vertices, plain.vertices);
   EXPECT_EQ(stretched.tets, plain.tets);
-  EXPECT_EQ(toWorld(stretched.header.index_to_world, {1, 2, 3}), (std::array<double, 3>{1e7 + 1, -1e7 + 2, 1e7 + 3000}));
+  EXPECT_EQ(toWorld(stretched.header.index_to_world, {1, 2, 3}),
+            (std::array<double, 3>{1e7 + 1, -1e7 + 2, 1e7 + 3000}));
 }
 
 }  // namespace
