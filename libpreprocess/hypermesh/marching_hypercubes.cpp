@@ -239,6 +239,7 @@ void Extraction::extractPart(std::size_t slab, std::size_t p) {
     slab_tets.emitLayer(z, std::span(tets_.get() + layers[z], layers[z + 1] - layers[z]));
   });
   const std::span<const Tet> tets(tets_.get(), layers.back());
+  progress_.step(slab + 1);
   addPage(p, {slab, joinsLast(), tets, layers}, runsOf(slab, p), boundsOf(part, tets, slab));
 }
 
