@@ -254,6 +254,13 @@ Result<GatheredPage> File::gather(std::size_t k) const {
   return page;
 }
 
+Result<std::uint64_t> File::partOf(std::size_t k) const {
+  PageView view;
+  const auto bytes = loadPage(k, view);
+  if (!bytes.ok()) return bytes.fault();
+  return view.header->part;
+}
+
 std::uint64_t File::gatherBytes(std::size_t k) const {
   const auto& counts = geometryEntry(k).counts;
   return decodedBytes(geometryEntry(k)) + (counts[3] == 0 ? 0 : largest_decoded_) +

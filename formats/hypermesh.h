@@ -119,6 +119,8 @@ class File {
   Result<std::uint64_t> contentDigest() const;
   // Loads and proves geometry page k and gathers its foreign vertices from the pages that own them. O(page + owners).
   Result<GatheredPage> gather(std::size_t k) const;
+  // The part that geometry page k belongs to; reads the page, but gathers nothing. O(page).
+  Result<std::uint64_t> partOf(std::size_t k) const;
   // What gather(k) may hold at once: the page and an owner's decoded, and the positions. Bytes, without reading the
   // page.
   std::uint64_t gatherBytes(std::size_t k) const;

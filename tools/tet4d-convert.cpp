@@ -81,6 +81,9 @@ int main(int argc, char** argv) {
       .option("--columns", "NAME,...", "columns of the hypermesh to interpolate: names, all or none", &options.columns)
       .flag("--velocity", "write the velocity along the normal: the column, else computed from the tetrahedra",
             &options.velocity)
+      .option("--part", "N", "only part N, counted from 0, of a hypermesh of several isovalues", &options.part)
+      .option("--draco-bits", "N", "of a .drc's positions and columns, 1 to 30; normals have four fewer",
+              &options.draco_bits)
       .heading("Options")
       .option("--page-codec", "CODEC", "how a .t4g's frames are stored", cli::Choice{&options.codec, {"raw", "zstd"}})
       .common({cli::kOutputRequired, cli::kForce, cli::kStats, cli::kDepfile});

@@ -19,9 +19,9 @@ std::uint64_t mixed(std::uint64_t x) {
 }  // namespace
 
 // The slot of a key: its vertex's, or the empty one where it belongs.
-std::size_t TetSlicer::slotOf(const SliceVertexKey& key) const {
+inline std::size_t TetSlicer::slotOf(const SliceVertexKey& key) const {
   const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = static_cast<std::size_t>(mixed(mixed(key.a) + 0x9e3779b97f4a7c15ull * key.b)) & mask;
+  std::size_t slot = static_cast<std::size_t>(mixed(key.a * 0x9e3779b97f4a7c15ull + key.b)) & mask;
   while (slots_[slot] != kEmpty && mesh_.keys[slots_[slot]] != key) slot = (slot + 1) & mask;
   return slot;
 }
@@ -67,12 +67,18 @@ void TetSlicer::add(std::span<const std::array<std::uint32_t, 4>> tets, std::spa
       if (mesh_.keys.size() * 2 > slots_.size()) grow();
       return number;
     };
+    std::array<std::uint32_t, 6> made;  // by edge: its vertex, once a triangle has used it
+    made.fill(kEmpty);
     for (const DynTriRule& rule : kDynTriRules) {
       if (!isAlive(positions[v[rule.begin]].t, positions[v[rule.end]].t, t_, last_t_)) continue;
       const std::array ends{endsOf(rule.edges[0]), endsOf(rule.edges[1]), endsOf(rule.edges[2])};
       if (ends[0] == ends[1] || ends[1] == ends[2] || ends[2] == ends[0]) continue;
       std::array<std::uint32_t, 3> corners;
-      for (std::size_t c = 0; c < 3; ++c) corners[c] = vertexOf(ends[c]);
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::uint32_t& vertex = made[rule.edges[c]];
+        if (vertex == kEmpty) vertex = vertexOf(ends[c]);
+        corners[c] = vertex;
+      }
       if (order.odd) std::swap(corners[1], corners[2]);
       mesh_.triangles.push_back(corners);
       tets_.push_back(static_cast<std::uint32_t>(i));

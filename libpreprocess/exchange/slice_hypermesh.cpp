@@ -22,6 +22,7 @@ Slice sliceHypermesh(const hypermesh::File& mesh, double frame, const SliceWants
     const Bounds4f& bounds = mesh.geometryEntry(k).bounds;
     const bool alive = bounds.min.t <= t && (t < bounds.max.t || (t == bounds.max.t && t == last_t));
     if (!alive || mesh.geometryEntry(k).counts[2] == 0) continue;
+    if (wants.part && unwrap(mesh.partOf(k)) != *wants.part) continue;
     const hypermesh::GatheredPage page = unwrap(mesh.gather(k));
     const std::size_t vertices = slicer.mesh().keys.size();
     slicer.add(page.view.tets, page.positions, globalNumbers(page.view));

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "formats/core/slicer.h"
@@ -12,8 +14,9 @@ namespace tet4d::exchange {
 
 // What a slice is to carry beside its triangles; nothing else is loaded or computed.
 struct SliceWants {
-  std::vector<std::size_t> columns;  // of mesh.columns()
-  bool velocity = false;             // from the tetrahedra (TetVelocity), as a column "velocity"
+  std::vector<std::size_t> columns;   // of mesh.columns()
+  bool velocity = false;              // from the tetrahedra (TetVelocity), as a column "velocity"
+  std::optional<std::uint64_t> part;  // only the pages of this part
 };
 
 struct Slice {

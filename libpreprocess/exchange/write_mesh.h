@@ -37,6 +37,8 @@ const MeshFormat* meshFormatOf(const std::string& path);
 // What writing cost in exactness.
 struct WriteLoss {
   double position_world = 0;  // largest distance along an axis between a point and what the file says of it
+  double normal_degrees = 0;  // largest angle between a normal and what the file says
+  std::vector<std::pair<std::string, double>> columns;  // largest difference of a component; .drc only
 };
 
 // Writes a slice in the format of its suffix, which must be one of meshFormats(). Same mesh, same bytes. O(mesh).
@@ -61,6 +63,12 @@ void writeStl(const std::string& path, const WorldMesh& mesh, const MeshFileOpti
 // are, the time in the scene's extras. If as_double, coordinates are from `origin`, which the node's translation adds.
 // glTF wants unit normals: where there is none, +z stands. Throws Error{kBadInput} above 4 GiB, the format's end.
 void writeGlb(const std::string& path, const WorldMesh& mesh, const MeshFileOptions& options);
+
+// Draco (.drc), if the build has it, else Error{kUsage}: positions and columns quantized to draco_bits of their range,
+// normals to four fewer, a column with numbers of 1e37 and above or without numbers kept as it is. Vertices are
+// numbered anew. The file is decoded again: its triangles are compared, and the loss is measured, not estimated.
+// Memory: some four times the mesh.
+WriteLoss writeDraco(const std::string& path, const WorldMesh& mesh, const MeshFileOptions& options);
 
 // ParaView's series: times and the names of their files, relative to the .pvd.
 void writePvd(const std::string& path, const std::vector<std::pair<double, std::string>>& steps, bool force);

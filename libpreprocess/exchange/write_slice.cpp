@@ -11,13 +11,15 @@ namespace {
 
 using WriteMesh = void (*)(const std::string&, const WorldMesh&, const MeshFileOptions&);
 
-// Parallel to one another.
+// Parallel to one another, but for .drc, which stands last and measures its own loss.
 constexpr std::array kFormats{
     MeshFormat{".ply", true, true, true},    MeshFormat{".vtp", true, true, true},
     MeshFormat{".off", true, false, true},   MeshFormat{".obj", true, false, true},
     MeshFormat{".stl", false, false, false}, MeshFormat{".glb", true, true, false},
+    MeshFormat{".drc", true, true, false},
 };
-constexpr std::array<WriteMesh, kFormats.size()> kWriters{writePly, writeVtp, writeOff, writeObj, writeStl, writeGlb};
+constexpr std::array<WriteMesh, kFormats.size() - 1> kWriters{writePly, writeVtp, writeOff,
+                                                              writeObj, writeStl, writeGlb};
 
 }  // namespace
 
@@ -34,10 +36,13 @@ WriteLoss writeSlice(const std::string& path, const WorldMesh& mesh, const MeshF
   if (format == nullptr) {
     throw Error(FaultCode::kUsage, path, "", "slices cannot be written in this format", "see meshFormats()");
   }
+  if (format->suffix == ".drc") return writeDraco(path, mesh, options);
   kWriters[static_cast<std::size_t>(format - kFormats.data())](path, mesh, options);
-  if (options.as_double && format->doubles) return {0};
+  if (options.as_double && format->doubles) return {};
   const bool moved = options.as_double && format->suffix == ".glb";
-  return {floatError(mesh, moved ? options.origin : std::array<double, 3>{0, 0, 0})};
+  WriteLoss loss;
+  loss.position_world = floatError(mesh, moved ? options.origin : std::array<double, 3>{0, 0, 0});
+  return loss;
 }
 
 }  // namespace tet4d::exchange

@@ -62,6 +62,22 @@ void writeMesh(const std::string& path, const std::vector<hypermesh::Tet>& tets,
   must(writer.close(kProvenance));
 }
 
+// Two parts: the mesh of writeMesh, and its first tetrahedron once more.
+void writeParts(const std::string& path) {
+  const std::vector<Vec4f> vertices{{0, 0, 0, 0.25F}, {2, 0, 0, 0.5F}, {0, 2, 0, 0.75F}, {1, 1, 1, 0}, {1, 1, -1, 1}};
+  hypermesh::MeshHeader header{};
+  header.domain = {{-4, -4, -4, 0}, {4, 4, 4, 1}};
+  header.isovalue = std::numeric_limits<double>::quiet_NaN();
+  header.index_to_world = AffineMap{};
+  const std::vector<double> times{0, 2}, isovalues{0.25, 0.75};
+  auto writer = must(hypermesh::Writer::create(path, header, times, {}, paged::Codec::kRaw, true, isovalues));
+  Bounds4f bounds;
+  for (const Vec4f& vertex : vertices) bounds.add(vertex);
+  must(writer.addPage(vertices, {}, std::vector<hypermesh::Tet>{{0, 1, 2, 3}, {1, 0, 2, 4}}, bounds, {}, 0));
+  must(writer.addPage(vertices, {}, std::vector<hypermesh::Tet>{{0, 1, 2, 3}}, bounds, {}, 1));
+  must(writer.close(kProvenance));
+}
+
 // The first tetrahedron of writeMesh with the columns `normal`, `velocity` and `heat`, far from the world's origin.
 void writeColumns(const std::string& path) {
   const std::vector<Vec4f> vertices{{0, 0, 0, 0.25F}, {2, 0, 0, 0.5F}, {0, 2, 0, 0.75F}, {1, 1, 1, 0}};
@@ -140,6 +156,7 @@ int main(int argc, char** argv) {
   // Faces opposite 3 and 4 are the same triangle, wound oppositely: sound.
   writeMesh(in("mesh.t4h"), {{0, 1, 2, 3}, {1, 0, 2, 4}}, 0);
   writeColumns(in("columns.t4h"));
+  writeParts(in("parts.t4h"));
   writeMesh(in("misoriented.t4h"), {{0, 1, 2, 3}, {0, 1, 2, 4}}, 0);
   // On a grid the mesh may end on the walls of the domain only; this one ends inside.
   writeMesh(in("open.t4h"), {{0, 1, 2, 3}, {1, 0, 2, 4}}, hypermesh::kOnGrid);

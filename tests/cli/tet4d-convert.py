@@ -60,7 +60,45 @@ def check_velocity(result):
     assert any(abs(x) > 0.01 for x in values["velocity_x"]), "a dam break that stands still"
 
 
+def check_parts(result):
+    header = {name: ply_header(result.directory / f"{name}.ply") for name in ("both", "p0", "p1", "lone")}
+    faces = {name: int(text.split("element face ")[1].split()[0]) for name, text in header.items()}
+    assert faces["both"] == faces["p0"] + faces["p1"] and faces["p0"] == faces["lone"] > faces["p1"] > 0, faces
+
+
+# A build without Draco says how to get it; the case then holds too.
+DRACO = "{ tet4d-convert %s -o %s 2> drc.txt || { grep -q 'TET4D_WITH_DRACO=ON' drc.txt && exit 0; cat drc.txt >&2; exit 9; }; }; "
+
 CASES = [
+    {
+        "name": "Draco: smaller, the same bytes each time, its loss in words and in the record",
+        "shell": DAM + DRACO % ("dam.t4h --at 0.17 --normals --velocity --stats s.json", "a.drc")
+        + "grep -q 'quantized: positions within .* world units, normals within .* degrees, velocity within ' drc.txt; "
+        "grep -q '\"column_velocity\"' s.json; "
+        "tet4d-convert dam.t4h --at 0.17 --normals --velocity -q -o b.drc; cmp a.drc b.drc; "
+        "tet4d-convert dam.t4h --at 0.17 --normals --velocity --draco-bits 6 -q -o c.drc; "
+        "test $(stat -c %s c.drc) -lt $(stat -c %s a.drc)",
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "bits that Draco does not have",
+        "shell": "tet4d-convert {files}/columns.t4h --at 0.8 --draco-bits 31 -o x.drc",
+        "exit": 2,
+        "stderr": ["--draco-bits", "31", "1 to 30"],
+        "absent": ["x.drc"],
+    },
+    {
+        "name": "one part of a hypermesh of two isovalues",
+        "shell": "for p in 0 1; do tet4d-convert {files}/parts.t4h --at 0.8 --part $p -q -o p$p.ply; done; "
+        "tet4d-convert {files}/parts.t4h --at 0.8 -q -o both.ply; tet4d-convert {files}/mesh.t4h --at 0.8 --part 0 -q -o lone.ply",
+        "check": check_parts,
+    },
+    {
+        "name": "a part that is not there",
+        "shell": "tet4d-convert {files}/mesh.t4h --at 0.8 --part 1 -o x.ply",
+        "exit": 2,
+        "stderr": ["--part", "there is no part 1"],
+    },
     {
         "name": "every format of slices is written, the same bytes each time",
         "shell": DAM + "for s in ply vtp off obj stl glb; do tet4d-convert dam.t4h --at 0.17 -q -o a.$s; "

@@ -43,7 +43,7 @@ TEST(SliceColumns, AreInterpolatedAsPositionsAreAcrossPages) {
   const hypermesh::File file = columnedFile(scratch);
   ASSERT_EQ(file.geometryPages(), 3u);
   for (const double frame : {0.0, 0.25, 1.0, 1.7, 2.0, 2.999, 3.0}) {
-    const Slice slice = sliceHypermesh(file, frame, {{1, 0}, false});
+    const Slice slice = sliceHypermesh(file, frame, {{1, 0}, false, {}});
     ASSERT_EQ(slice.columns.size(), 2u) << "what was not asked for is left out";
     EXPECT_EQ(slice.columns[0].name, "linear");
     EXPECT_EQ(slice.columns[1].name, "place");
@@ -67,7 +67,7 @@ TEST(SliceColumns, AreInterpolatedAsPositionsAreAcrossPages) {
 TEST(SliceColumns, NormalsStayUnitAndZeroStaysZero) {
   const Scratch scratch;
   const hypermesh::File file = columnedFile(scratch);
-  const Slice slice = sliceHypermesh(file, 1.5, {{2}, false});
+  const Slice slice = sliceHypermesh(file, 1.5, {{2}, false, {}});
   std::size_t zeros = 0, turned = 0;
   for (std::size_t i = 0; i < slice.mesh.positions.size(); ++i) {
     const float* n = &slice.columns[0].values[3 * i];
@@ -79,7 +79,7 @@ TEST(SliceColumns, NormalsStayUnitAndZeroStaysZero) {
   }
   EXPECT_GT(zeros, 0u);
   EXPECT_GT(turned, 0u);
-  const Slice wind = sliceHypermesh(file, 1.5, {{3}, false});
+  const Slice wind = sliceHypermesh(file, 1.5, {{3}, false, {}});
   EXPECT_TRUE(std::isinf(wind.columns[0].values[1])) << "an infinity at both ends is one between them";
 }
 
@@ -94,8 +94,9 @@ TEST(SliceColumns, ADamagedColumnOfAnotherPageIsNamed) {
   }
   bytes[offset] = static_cast<char>(bytes[offset] ^ 1);
   const auto file = unwrap(hypermesh::File::open(scratch.write("bad.t4h", bytes)));
-  EXPECT_FALSE(sliceHypermesh(file, 0.5, {{0}, false}).mesh.triangles.empty()) << "what is not asked for is not read";
-  const Fault fault = testing::faultOf([&] { sliceHypermesh(file, 0.5, {{1}, false}); });
+  EXPECT_FALSE(sliceHypermesh(file, 0.5, {{0}, false, {}}).mesh.triangles.empty())
+      << "what is not asked for is not read";
+  const Fault fault = testing::faultOf([&] { sliceHypermesh(file, 0.5, {{1}, false, {}}); });
   EXPECT_EQ(fault.code, FaultCode::kBadInput) << "page 0 needs its neighbour's values";
   EXPECT_NE((fault.place + fault.what).find("page 7"), std::string::npos) << fault.place << ": " << fault.what;
 }

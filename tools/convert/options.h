@@ -1,7 +1,9 @@
 // What the parts of tet4d-convert share: the options as given and how a wrong use of them is told.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,8 @@ struct Options {
   bool normals = false;
   std::string normals_from = "slice", columns = "none";
   bool velocity = false;
+  std::uint64_t draco_bits = 14;
+  std::optional<std::uint64_t> part;
   // Frames.
   std::string codec = "raw";
   frames::FrameOptions frames;
@@ -27,12 +31,13 @@ struct Options {
     if (normals) return "--normals";
     if (normals_from != "slice") return "--normals-from";
     if (columns != "none") return "--columns";
-    return velocity ? "--velocity" : "";
+    if (velocity) return "--velocity";
+    return part ? "--part" : "";
   }
 };
 
 inline constexpr const char* kPossible =
-    "possible are: .t4h to .vtu, .hyper; .t4h with --at to .ply, .vtp, .off, .obj, .stl, .glb; .t4h with --times "
+    "possible are: .t4h to .vtu, .hyper; .t4h with --at to .ply, .vtp, .off, .obj, .stl, .glb, .drc; .t4h with --times "
     "to a pattern such as %04d.ply or to .pvd; frames (.nrrd, .mha, .vti, .pvd, raw, .t4g, a directory, a pattern, -) "
     "to "
     ".t4g, .nrrd";

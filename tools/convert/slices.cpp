@@ -86,6 +86,16 @@ Contents contentsOf(const hypermesh::File& mesh, const Options& options) {
       contents.wants.velocity = true;
     }
   }
+  if (options.part) {
+    const std::uint64_t parts = std::max<std::uint64_t>(1, mesh.parts().size());
+    if (*options.part >= parts) {
+      throw Error(FaultCode::kUsage, mesh.reader().path(), "--part",
+                  "there is no part " + std::to_string(*options.part) + "; it has " +
+                      (parts == 1 ? "one, 0" : "parts 0 to " + std::to_string(parts - 1)),
+                  "tet4d-info lists them with their isovalues");
+    }
+    if (parts > 1) contents.wants.part = options.part;
+  }
   const auto normal = findVectors(mesh, exchange::kNormal);
   if (options.normals_from == "column") {
     if (!normal) {
@@ -116,11 +126,12 @@ void checkFormat(const std::string& name, const Contents& contents) {
 // Writes slices one after the other and counts what is in them.
 class SliceWriter {
  public:
-  SliceWriter(cli::Session& session, const hypermesh::File& mesh, Contents contents)
+  SliceWriter(cli::Session& session, const hypermesh::File& mesh, const Options& options, Contents contents)
       : session_(session), mesh_(mesh), contents_(std::move(contents)) {
     file_.as_double = exchange::needsDouble(mesh.header().index_to_world, mesh.header().domain);
     file_.origin = mesh.header().index_to_world.origin;
     file_.force = session.options().force;
+    file_.draco_bits = static_cast<unsigned>(options.draco_bits);
   }
 
   void write(const std::string& path, const SliceTime& at) {
@@ -132,7 +143,12 @@ class SliceWriter {
     triangles_ += world.triangles.size();
     file_.time = at.time;
     const exchange::WriteLoss loss = exchange::writeSlice(path, world, file_);
-    if (loss.position_world > loss_world_) loss_world_ = loss.position_world, worst_ = path;
+    if (loss.position_world > loss_.position_world) loss_.position_world = loss.position_world, worst_ = path;
+    loss_.normal_degrees = std::max(loss_.normal_degrees, loss.normal_degrees);
+    loss_.columns.resize(loss.columns.size());
+    for (std::size_t c = 0; c < loss.columns.size(); ++c) {
+      loss_.columns[c] = {loss.columns[c].first, std::max(loss_.columns[c].second, loss.columns[c].second)};
+    }
   }
 
   // Tells once, after the last slice, what was lost.
@@ -140,26 +156,38 @@ class SliceWriter {
     session_.stats().count("vertices", vertices_);
     session_.stats().count("triangles", triangles_);
     session_.stats().count("slices", slices);
-    session_.stats().error("position_world", loss_world_);
+    session_.stats().error("position_world", loss_.position_world);
+    if (loss_.normal_degrees > 0) session_.stats().error("normal_degrees", loss_.normal_degrees);
+    for (const auto& [name, loss] : loss_.columns) session_.stats().error("column_" + name, loss);
     session_.note(std::to_string(slices) + (slices == 1 ? " slice, " : " slices, ") + std::to_string(vertices_) +
                   " vertices, " + std::to_string(triangles_) + " triangles");
-    if (!file_.as_double || exchange::meshFormatOf(worst_) == nullptr) return;
+    if (worst_.empty()) return;
     const exchange::MeshFormat& format = *exchange::meshFormatOf(worst_);
-    if (format.doubles || format.suffix == ".glb") return;
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", loss_world_);
-    session_.warn(worst_ + ": its format has float32 only, and the origin is far away: positions are off by up to " +
-                  text + " world units; .ply, .vtp, .off, .obj and .glb keep them");
+    if (format.suffix == ".drc") {
+      std::string text = "quantized: positions within " + shortText(loss_.position_world) + " world units";
+      if (loss_.normal_degrees > 0) text += ", normals within " + shortText(loss_.normal_degrees) + " degrees";
+      for (const auto& [name, loss] : loss_.columns) text += ", " + name + " within " + shortText(loss);
+      session_.note(text);
+    } else if (file_.as_double && !format.doubles && format.suffix != ".glb") {
+      session_.warn(worst_ + ": its format has float32 only, and the origin is far away: positions are off by up to " +
+                    shortText(loss_.position_world) + " world units; .ply, .vtp, .off, .obj and .glb keep them");
+    }
   }
 
  private:
+  static std::string shortText(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+  }
+
   cli::Session& session_;
   const hypermesh::File& mesh_;
   Contents contents_;
   exchange::MeshFileOptions file_;
   std::uint64_t vertices_ = 0, triangles_ = 0;
-  double loss_world_ = 0;
-  std::string worst_;  // the file with that loss
+  exchange::WriteLoss loss_;  // the largest of each
+  std::string worst_;         // the file with the largest loss of position
 };
 
 // The name of slice k: from a pattern, or beside a .pvd.
@@ -187,9 +215,12 @@ void checkSliceOutput(const Options& options, const std::string& output) {
 void writeSlices(cli::Session& session, const hypermesh::File& mesh, const Options& options) {
   const std::string& output = session.options().output;
   checkSliceOutput(options, output);
+  if (options.draco_bits < 1 || options.draco_bits > 30) {
+    failUsage("--draco-bits: " + std::to_string(options.draco_bits) + " is not from 1 to 30", "14 is usual");
+  }
   Contents contents = contentsOf(mesh, options);
   checkFormat(suffixOf(output) == ".pvd" ? "x.vtp" : output, contents);
-  SliceWriter writer(session, mesh, std::move(contents));
+  SliceWriter writer(session, mesh, options, std::move(contents));
   std::vector<SliceTime> at;
   if (!options.at.empty()) {
     at.push_back(unwrap(parseTime(options.at, mesh.times())));
