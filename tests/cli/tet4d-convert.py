@@ -94,6 +94,13 @@ CASES = [
         "check": check_parts,
     },
     {
+        "name": "columns that tet4d-mc made reach a slice",
+        "shell": "tet4d-mc {data}/dambreak/alpha_00{08,09,10}.nrrd --iso 0.5 --normals tets --velocity -q -o n.t4h; "
+        "tet4d-convert n.t4h --at 0.17 --normals-from column --velocity -q -o v.ply",
+        "check": check_velocity,
+        "needs": ["tet4d-mc"],
+    },
+    {
         "name": "a part that is not there",
         "shell": "tet4d-convert {files}/mesh.t4h --at 0.8 --part 1 -o x.ply",
         "exit": 2,
