@@ -1,10 +1,12 @@
 // tet4d-convert: slices of a hypermesh, whole hypermeshes and sequences of frames into other formats.
 #include <string>
 
+#include "libpreprocess/exchange/read_tet_mesh.h"
 #include "libpreprocess/exchange/write_mesh.h"
 #include "tools/common/cli.h"
 #include "tools/convert/frames.h"
 #include "tools/convert/options.h"
+#include "tools/convert/scalar_as_time.h"
 #include "tools/convert/slices.h"
 
 namespace {
@@ -50,7 +52,14 @@ int body(cli::Session& session, const Options& options) {
   if (!is_hypermesh && suffix != ".t4g" && suffix.starts_with(".t4")) {
     failUsage("\"" + options.inputs.front() + "\" is not converted");
   }
-  if (is_hypermesh) {
+  const bool is_mesh = exchange::isTetMeshName(options.inputs.front());
+  if (is_mesh && options.scalar_as_time.empty()) {
+    failUsage("\"" + options.inputs.front() + "\" is a mesh of tetrahedra",
+              "say which scalar is time: --scalar-as-time NAME");
+  }
+  if (!options.scalar_as_time.empty()) {
+    convertScalarAsTime(session, options);
+  } else if (is_hypermesh) {
     convertHypermesh(session, options);
   } else {
     convertFrames(session, options);
@@ -68,6 +77,7 @@ int main(int argc, char** argv) {
       .example("tet4d-convert dam.t4h --times 0:1:0.01 -o 'slices/%04d.ply'", "a hundred and one numbered files")
       .example("tet4d-convert dam.t4h --at 20f --normals --velocity -o dam.glb", "with normals and how fast it moves")
       .example("tet4d-convert dam.t4h -o dam.vtu", "the whole hypermesh, tetrahedra with a point array t")
+      .example("tet4d-convert blast.vtu --scalar-as-time p -o p.t4h", "every isosurface of p, swept as if it were time")
       .example("tet4d-convert alpha_*.nrrd -o alpha.t4g", "frames into one file")
       .example("tet4d-convert scan.mha --crop 0:255,0:255,20:80 --time-stride 2 -o part.nrrd", "a part of a sequence")
       .positional("FILE", "a hypermesh (.t4h), or frames of a volume in time order, as tet4d-mc takes them",
@@ -84,6 +94,12 @@ int main(int argc, char** argv) {
       .option("--part", "N", "only part N, counted from 0, of a hypermesh of several isovalues", &options.part)
       .option("--draco-bits", "N", "of a .drc's positions and columns, 1 to 30; normals have four fewer",
               &options.draco_bits)
+      .heading("Meshes of tetrahedra")
+      .option("--scalar-as-time", "NAME", "a hypermesh whose slice at v is the isosurface of v: an array, or x, y, z",
+              &options.scalar_as_time)
+      .option("--sweep-frames", "N", "frames that the scalar's range is divided into, both ends included",
+              &options.sweep_frames)
+      .flag("--tets-only", "leave out cells that are no tetrahedra", &options.tets_only)
       .heading("Options")
       .option("--page-codec", "CODEC", "how a .t4g's frames are stored", cli::Choice{&options.codec, {"raw", "zstd"}})
       .common({cli::kOutputRequired, cli::kForce, cli::kStats, cli::kDepfile});

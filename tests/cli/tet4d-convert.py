@@ -4,6 +4,11 @@ import struct
 
 DAM = "tet4d-mc {data}/dambreak/alpha_00{08,09,10}.nrrd --iso 0.5 -q -o dam.t4h; "
 
+MESH = (
+    "printf 'MeshVersionFormatted 1 Dimension 3 Vertices 5 0 0 0 1 1 0 0 1 0 1 0 1 0 0 1 1 1 1 1.5 1 "
+    "Tetrahedra 2 1 2 3 4 0 2 3 4 5 0 End' > m.mesh; "
+)
+
 
 def check_hyper(result):
     points = (result.directory / "dam.hyper.pts4.f32").read_bytes()
@@ -255,5 +260,39 @@ CASES = [
         "shell": "cp {data}/dambreak/alpha_00{08,09}.nrrd .; tet4d-convert alpha_%04d.nrrd -q -o one.t4g; "
         "mv alpha_0008.nrrd b_1.nrrd; mv alpha_0009.nrrd b_2.nrrd; tet4d-convert b_1.nrrd b_2.nrrd -q -o two.t4g; "
         "cmp one.t4g two.t4g",
+    },
+    {
+        "name": "a scalar of a mesh as time: sound, sliced at its values, drawn",
+        "shell": MESH + "tet4d-convert m.mesh --scalar-as-time z --sweep-frames 3 -q -o m.t4h --stats s.json; "
+        "tet4d-info --validate m.t4h > /dev/null; tet4d-convert m.t4h --at 0.75 -q -o m.ply; "
+        "dyntri-build m.t4h -q -o m.t4d; tet4d-info --validate m.t4d > /dev/null",
+        "file": {"m.ply": ["element vertex 5", "element face 3"]},
+        "json_file": {"s.json": {"counts.tets": 2, "counts.vertices": 5, "counts.frames": 3}},
+        "needs": ["tet4d-info", "dyntri-build"],
+    },
+    {
+        "name": "a scalar that is not there names the nearest",
+        "shell": DAM + "tet4d-convert dam.t4h -q -o dam.vtu; tet4d-convert dam.vtu --scalar-as-time tt -o x.t4h",
+        "exit": 3,
+        "stderr": ["dam.vtu", 'has no array "tt"', "did you mean t?"],
+        "absent": ["x.t4h"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "a mesh needs a scalar",
+        "shell": MESH + "tet4d-convert m.mesh -o m.t4h",
+        "exit": 2,
+        "stderr": ["m.mesh", "--scalar-as-time"],
+    },
+    {
+        "name": "a VTK image is frames too",
+        "shell": "printf '<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\"><Piece Extent=\"0 1 0 1 0 1\">"
+        "<PointData><DataArray type=\"UInt8\" Name=\"a\" format=\"ascii\">1 2 3 4 5 6 7 8</DataArray></PointData>"
+        "</Piece></ImageData></VTKFile>' > a.vti; tet4d-convert a.vti -q -o a.nrrd; tail -c 8 a.nrrd | od -An -tu1; "
+        "tet4d-convert a.vti --array b -o b.nrrd",
+        "exit": 3,
+        "stdout": ["1   2   3   4   5   6   7   8"],
+        "stderr": ["a.vti", 'no array "b"', "did you mean a? The file holds: a"],
+        "absent": ["b.nrrd"],
     },
 ]

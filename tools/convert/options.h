@@ -21,6 +21,10 @@ struct Options {
   bool velocity = false;
   std::uint64_t draco_bits = 14;
   std::optional<std::uint64_t> part;
+  // Meshes with a scalar as time.
+  std::string scalar_as_time;
+  std::uint64_t sweep_frames = 65;
+  bool tets_only = false;
   // Frames.
   std::string codec = "raw";
   frames::FrameOptions frames;
@@ -38,9 +42,8 @@ struct Options {
 
 inline constexpr const char* kPossible =
     "possible are: .t4h to .vtu, .hyper; .t4h with --at to .ply, .vtp, .off, .obj, .stl, .glb, .drc; .t4h with --times "
-    "to a pattern such as %04d.ply or to .pvd; frames (.nrrd, .mha, .vti, .pvd, raw, .t4g, a directory, a pattern, -) "
-    "to "
-    ".t4g, .nrrd";
+    "to a pattern such as %04d.ply or to .pvd; a mesh (.vtu, .mesh, .msh, .node) with --scalar-as-time to .t4h; frames "
+    "(.nrrd, .mha, .vti, .pvd, raw, .t4g, a directory, a pattern, -) to .t4g, .nrrd";
 
 [[noreturn]] inline void failUsage(const std::string& what, const std::string& remedy = kPossible) {
   throw Error(FaultCode::kUsage, "", "", what, remedy);
