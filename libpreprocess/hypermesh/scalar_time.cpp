@@ -29,7 +29,7 @@ constexpr std::uint64_t kRunGap = 8;
 ScalarSweep::ScalarSweep(exchange::TetMesh mesh, std::uint64_t frames, outofcore::MemoryBudget& memory)
     : mesh_(std::move(mesh)) {
   if (mesh_.tets.size() >= kNone) fail(mesh_, "", "2^32 tetrahedra or more", "cut the mesh into parts");
-  memory_ = memory.reserve(mesh_.points.size() * 20 + mesh_.tets.size() * 4, "the order of vertices and tetrahedra");
+  memory_ = memory.reserve(mesh_.points.size() * 21 + mesh_.tets.size() * 4, "the order of vertices and tetrahedra");
   checkTets();
   setTimes(frames);
   setMap();

@@ -11,7 +11,7 @@
 // boundary is inner boundary of the hypermesh.
 //
 // Pages are steps of the range: page k has the tetrahedra whose least scalar lies in step k, and the vertices that they
-// are the first to use. Memory: the mesh, and 20 bytes a vertex and 4 a tetrahedron beside it, and one page.
+// are the first to use. Memory: the mesh, and 21 bytes a vertex and 4 a tetrahedron beside it, and one page.
 #pragma once
 
 #include <array>

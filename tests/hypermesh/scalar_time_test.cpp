@@ -187,7 +187,7 @@ class ScalarTime : public ::testing::Test {
 
 TEST_F(ScalarTime, SlicesAreTheIsosurfacesOfMarchingTetrahedra) {
   const TetMesh mesh = cube(9, waves);
-  for (const std::uint64_t frames : {2, 3, 65, 500}) {
+  for (const std::uint64_t frames : {2U, 3U, 65U, 500U}) {
     const File file = sweep(mesh, frames);
     EXPECT_EQ(file.geometryPages(), frames - 1);
     EXPECT_EQ(file.header().tets, mesh.tets.size());
