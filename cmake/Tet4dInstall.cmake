@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 # The files and the builders. The command line and the player's rooms serve our programs and are not exported.
 get_property(tet4d_libraries GLOBAL PROPERTY TET4D_LIBRARIES)
 set(tet4d_exported)
-foreach(library formats outofcore exchange topology measure hypermesh dyntri)
+foreach(library formats outofcore exchange topology measure hypermesh prisms dyntri)
   if(tet4d_${library} IN_LIST tet4d_libraries)
     list(APPEND tet4d_exported tet4d_${library})
   endif()

@@ -402,7 +402,10 @@ Status Writer::addPage(std::span<const Vec4f> vertices, std::span<const Run> run
   entry.counts[1] = head.owned;
   entry.counts[2] = head.tets;
   entry.counts[3] = head.foreign;
-  entry.error_measured = -1;
+  entry.error_estimated = error_estimated_;
+  entry.error_measured = error_measured_;
+  error_estimated_ = 0;
+  error_measured_ = -1;
   for (const Vec4f& v : vertices) bounds_.add(v);
   next_vertex_ += head.owned;
   tets_ += head.tets;
@@ -423,6 +426,7 @@ Status Writer::close(const std::string& provenance_json) {
   header_.vertices = next_vertex_;
   header_.tets = tets_;
   header_.bounds = page_layout::stored(bounds_);
+  if (const char* what = checkHeader(header_)) return Fault{FaultCode::kUsage, file_->path(), "section HHDR", what, ""};
   if (Status s = file_->add<MeshHeader>(kHeader, container::kSectionRequired, {&header_, 1}); !s.ok()) return s;
   if (Status s = file_->add<double>(kTimes, container::kSectionRequired, times_); !s.ok()) return s;
   if (!columns_.empty()) {

@@ -163,6 +163,10 @@ class Writer {
   Status setTimes(std::span<const double> times, float last_t);
   // Sets flags of the header that only the data can tell, such as kInnerBoundary. Any time before close.
   void addFlags(std::uint32_t flags) { header_.flags |= flags; }
+  // The domain where only the data tell it. Any time before close; close() checks it.
+  void setDomain(const Bounds4f& domain) { header_.domain = domain; }
+  // Errors of the next page, world units, in place of 0 and -1 (paged::PageEntry).
+  void setPageErrors(float estimated, float measured) { error_estimated_ = estimated, error_measured_ = measured; }
   std::uint64_t nextVertex() const { return next_vertex_; }
   std::uint64_t tets() const { return tets_; }
   Status close(const std::string& provenance_json);
@@ -176,6 +180,7 @@ class Writer {
   std::vector<PartEntry> parts_;
   std::uint64_t next_vertex_ = 0, tets_ = 0;
   Bounds4f bounds_;
+  float error_estimated_ = 0, error_measured_ = -1;  // of the next page
 };
 
 }  // namespace tet4d::hypermesh

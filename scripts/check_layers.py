@@ -24,6 +24,7 @@ ALLOWED = {
     "libpreprocess/topology": BASE,
     "libpreprocess/measure": BASE + ["libpreprocess/topology"],
     "libpreprocess/hypermesh": BASE + ["libpreprocess/topology", "libpreprocess/exchange"],
+    "libpreprocess/prisms": BASE + ["libpreprocess/topology", "libpreprocess/exchange"],
     "libpreprocess/dyntri": BASE + ["libpreprocess/topology"],
     "player/stream": FORMATS,
     "player/scene": FORMATS + ["player/stream"],
@@ -31,7 +32,7 @@ ALLOWED = {
     "player/host": FORMATS + ["player/stream", "player/scene", "player/render"],
     "tools/common": BASE,
     "tools": BASE + ["libpreprocess/exchange", "libpreprocess/topology", "libpreprocess/measure",
-                     "libpreprocess/hypermesh", "libpreprocess/dyntri", "player/scene", "tools/common"],
+                     "libpreprocess/hypermesh", "libpreprocess/prisms", "libpreprocess/dyntri", "player/scene", "tools/common"],
     "tools/tet4d-play": FORMATS + ["libpreprocess", "player/stream", "player/scene", "player/render", "player/host",
                                    "tools/common"],
     "tests": None,  # sees all

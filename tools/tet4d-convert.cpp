@@ -2,12 +2,14 @@
 #include <string>
 
 #include "libpreprocess/exchange/read_tet_mesh.h"
+#include "libpreprocess/exchange/surface_source.h"
 #include "libpreprocess/exchange/write_mesh.h"
 #include "tools/common/cli.h"
 #include "tools/convert/frames.h"
 #include "tools/convert/options.h"
 #include "tools/convert/scalar_as_time.h"
 #include "tools/convert/slices.h"
+#include "tools/convert/surfaces.h"
 
 namespace {
 
@@ -49,7 +51,7 @@ int body(cli::Session& session, const Options& options) {
   for (const std::string& input : options.inputs) session.dependsOn(input);
   const bool is_hypermesh = suffixOf(options.inputs.front()) == ".t4h";
   const std::string suffix = suffixOf(options.inputs.front());
-  if (!is_hypermesh && suffix != ".t4g" && suffix.starts_with(".t4")) {
+  if (!is_hypermesh && suffix != ".t4g" && suffix != ".t4q" && suffix.starts_with(".t4")) {
     failUsage("\"" + options.inputs.front() + "\" is not converted");
   }
   const bool is_mesh = exchange::isTetMeshName(options.inputs.front());
@@ -61,6 +63,8 @@ int body(cli::Session& session, const Options& options) {
     convertScalarAsTime(session, options);
   } else if (is_hypermesh) {
     convertHypermesh(session, options);
+  } else if (exchange::areSurfaces(options.inputs)) {
+    convertSurfaces(session, options);
   } else {
     convertFrames(session, options);
   }
@@ -80,7 +84,8 @@ int main(int argc, char** argv) {
       .example("tet4d-convert blast.vtu --scalar-as-time p -o p.t4h", "every isosurface of p, swept as if it were time")
       .example("tet4d-convert alpha_*.nrrd -o alpha.t4g", "frames into one file")
       .example("tet4d-convert scan.mha --crop 0:255,0:255,20:80 --time-stride 2 -o part.nrrd", "a part of a sequence")
-      .positional("FILE", "a hypermesh (.t4h), or frames of a volume in time order, as tet4d-mc takes them",
+      .example("tet4d-convert cloth-*.obj -o cloth.t4q", "a mesh whose vertices move into one file")
+      .positional("FILE", "a hypermesh (.t4h), or frames of a volume or meshes in time order, as tet4d-mc takes them",
                   &options.inputs)
       .heading("Slices")
       .option("--at", "T", "slice at a world time, or at a frame with the suffix f", &options.at)
@@ -101,7 +106,8 @@ int main(int argc, char** argv) {
               &options.sweep_frames)
       .flag("--tets-only", "leave out cells that are no tetrahedra", &options.tets_only)
       .heading("Options")
-      .option("--page-codec", "CODEC", "how a .t4g's frames are stored", cli::Choice{&options.codec, {"raw", "zstd"}})
+      .option("--page-codec", "CODEC", "how a .t4g's or .t4q's frames are stored",
+              cli::Choice{&options.codec, {"raw", "zstd"}})
       .common({cli::kOutputRequired, cli::kForce, cli::kStats, cli::kDepfile});
   frames::addFrameOptions(command, options.frames, "--frame-times");
   return cli::run(argc, argv, command, [&](cli::Session& session) { return body(session, options); });

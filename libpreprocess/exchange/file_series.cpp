@@ -87,21 +87,28 @@ bool naturalLess(const std::string& a, const std::string& b) {
 }
 
 std::vector<std::string> filesOfDirectory(const std::string& directory, bool raw) {
+  return filesOfDirectory(
+      directory, [raw](const std::string& name) { return std::string(kindOf(name, raw)); },
+      raw ? ".raw, .bin, .dat" : frameSuffixes());
+}
+
+std::vector<std::string> filesOfDirectory(const std::string& directory,
+                                          const std::function<std::string(const std::string&)>& format_of,
+                                          const std::string& suffixes) {
   std::vector<std::string> files;
   for (const std::string& name : namesIn(directory)) {
-    if (!kindOf(name, raw).empty()) files.push_back((fs::path(directory) / name).string());
+    if (!format_of(name).empty()) files.push_back((fs::path(directory) / name).string());
   }
   if (files.empty()) {
-    throw Error(FaultCode::kBadInput, directory, "",
-                "the directory holds no " + (raw ? std::string(".raw, .bin, .dat") : frameSuffixes()) + " files",
+    throw Error(FaultCode::kBadInput, directory, "", "the directory holds no " + suffixes + " files",
                 "name the frames' files");
   }
   std::sort(files.begin(), files.end(), naturalLess);
   for (const std::string& file : files) {
-    if (kindOf(file, raw) == kindOf(files.front(), raw)) continue;
+    if (format_of(file) == format_of(files.front())) continue;
     throw Error(FaultCode::kBadInput, directory, "",
                 "holds files of two kinds, " + files.front() + " and " + file + " among them",
-                "give a pattern of one of them, such as a_%04d.nrrd");
+                "give a pattern of one of them, such as a_%04d" + fs::path(files.front()).extension().string());
   }
   return files;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,11 @@ bool naturalLess(const std::string& a, const std::string& b);
 // The files of a directory that have a frame format's suffix, or (`raw`) that of a raw file, in natural order. Throws
 // Error if there are none, files of two formats, or it cannot be read.
 std::vector<std::string> filesOfDirectory(const std::string& directory, bool raw = false);
+
+// The same for other suffixes: those for which format_of() is not empty. `suffixes`: what to call them.
+std::vector<std::string> filesOfDirectory(const std::string& directory,
+                                          const std::function<std::string(const std::string&)>& format_of,
+                                          const std::string& suffixes);
 
 // The files that match a printf pattern (path with one %d …), by number. Throws Error if there are none.
 std::vector<std::string> filesOfPattern(const std::string& pattern);

@@ -86,21 +86,6 @@ std::vector<double> toldTimes(const FrameFiles& files) {
   return times;
 }
 
-// Frame numbers as times: 0, 1, 2 … and, where a hole was accepted, further apart.
-std::vector<double> countedTimes(std::size_t frames, const std::optional<std::vector<std::int64_t>>& numbers) {
-  std::vector<double> times(frames);
-  std::int64_t step = 1;
-  if (numbers && frames > 1) {
-    step = (*numbers)[1] - (*numbers)[0];
-    for (std::size_t k = 2; k < frames; ++k) step = std::min(step, (*numbers)[k] - (*numbers)[k - 1]);
-  }
-  for (std::size_t k = 0; k < frames; ++k) {
-    times[k] = numbers ? static_cast<double>((*numbers)[k] - numbers->front()) / static_cast<double>(step)
-                       : static_cast<double>(k);
-  }
-  return times;
-}
-
 std::vector<double> seriesTimes(const std::vector<std::string>& names, const FrameFiles& files,
                                 const FrameSourceOptions& options) {
   if (!options.times.empty()) {
@@ -135,6 +120,20 @@ void checkSameGrid(const std::string& first_name, const GridInfo& first, const s
   if (!nearlyEqual(first.index_to_world, other.index_to_world)) {
     fail("the grid's spacing, axes or origin differ from those of " + first_name, "all frames must lie on one grid");
   }
+}
+
+std::vector<double> countedTimes(std::size_t frames, const std::optional<std::vector<std::int64_t>>& numbers) {
+  std::vector<double> times(frames);
+  std::int64_t step = 1;
+  if (numbers && frames > 1) {
+    step = (*numbers)[1] - (*numbers)[0];
+    for (std::size_t k = 2; k < frames; ++k) step = std::min(step, (*numbers)[k] - (*numbers)[k - 1]);
+  }
+  for (std::size_t k = 0; k < frames; ++k) {
+    times[k] = numbers ? static_cast<double>((*numbers)[k] - numbers->front()) / static_cast<double>(step)
+                       : static_cast<double>(k);
+  }
+  return times;
 }
 
 void checkGivenTimes(const std::vector<double>& times, std::size_t frames) {

@@ -2,7 +2,9 @@
 // before (open_frames, or a format's own list of files).
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,9 @@ std::unique_ptr<FrameSource> openFileMovie(std::unique_ptr<FrameFile> file, cons
 // both.
 void checkSameGrid(const std::string& first_name, const GridInfo& first, const std::string& other_name,
                    const GridInfo& other);
+
+// Frame numbers as times: 0, 1, 2 … and, where a hole in the files' numbers was accepted, further apart.
+std::vector<double> countedTimes(std::size_t frames, const std::optional<std::vector<std::int64_t>>& numbers);
 
 // Proves that times given by the caller are as many as frames and growing. Throws Error{kUsage}.
 void checkGivenTimes(const std::vector<double>& times, std::size_t frames);

@@ -18,6 +18,27 @@ NAN_FILE = (
     "printf \"$zero$nan$one\" >> n.nrrd; for i in 1 2 3 4 5 6 7; do printf \"$zero$one$one\" >> n.nrrd; done; "
 )
 
+# A tetrahedron's surface, counter-clockwise from outside, that rises; the second file has vertices only.
+FACES = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
+
+
+def tip(z, faces=FACES):
+    return f"v 0 0 {z}\nv 1 0 {z}\nv 0 1 {z}\nv 0.25 0.25 {z + 1}\n" + faces
+
+
+MESHES = {"m_1.obj": tip(1), "m_2.obj": tip(2, ""), "m_3.obj": tip(3), "m_4.obj": tip(7)}
+
+# The same as text STL, which needs no OpenMesh.
+
+def stl(z):
+    corner = [f"0 0 {z}", f"1 0 {z}", f"0 1 {z}", f"0.25 0.25 {z + 1}"]
+    facets = "".join("facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {corner[i]}\n" for i in face) +
+                     "endloop\nendfacet\n" for face in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)))
+    return "solid s\n" + facets + "endsolid s\n"
+
+
+STLS = {"s_1.stl": stl(1), "s_2.stl": stl(2), "s_3.stl": stl(3), "s_4.stl": stl(7)}
+
 CASES = [
     {
         "name": "several isovalues are parts",
@@ -356,5 +377,75 @@ CASES = [
         "exit": 2,
         "stderr": ["--output: 'out.vtu' does not end in .t4h, which is what tet4d-mc writes", "tet4d-convert"],
         "absent": ["out.vtu"],
+    },
+    {
+        "name": "frames from standard input",
+        "run": ["tet4d-mc", "-", "--iso", "48.5", "-o", "x.t4h"],
+        "exit": 2,
+        "stderr": ["frames cannot be read from standard input yet", "give files"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "meshes: what moves straight is not expanded, and the result is a closed manifold",
+        "shell": "tet4d-mc s_%d.stl -o x.t4h --stats s.json && tet4d-info --validate --links --json x.t4h",
+        "prepare": STLS,
+        "stderr": ["4 frames of 4 triangles -> 24 tetrahedra, 12 vertices; 36 if every frame were kept"],
+        "json": {"valid": True, "counts.tets": 24, "faces.inner_boundary": 0, "links.faulty_vertices": 0},
+        "json_file": {"s.json": {"counts.triangles": 4, "counts.tets": 24, "counts.tets_expanded": 36,
+                                 "error.linear_measured": {"about": 0, "within": 1e-6}}},
+        "needs": ["tet4d-mc", "tet4d-info"],
+    },
+    {
+        "name": "meshes: every frame kept, and the same hypermesh from files, a .t4q and any threads",
+        "shell": "tet4d-mc s_*.stl --linear-window 1 -q -j 1 -o a.t4h && tet4d-convert . -q -o s.t4q && "
+        "tet4d-mc s.t4q --linear-window 1 -q -j 3 -o b.t4h && cmp a.t4h b.t4h && tet4d-info --validate --json s.t4q",
+        "prepare": STLS,
+        "json": {"valid": True, "payload": "surface_sequence", "counts.frames": 4, "counts.triangles": 4},
+        "needs": ["tet4d-mc", "tet4d-convert", "tet4d-info"],
+    },
+    {
+        "name": "meshes: an isovalue is for volumes",
+        "run": ["tet4d-mc", "s_1.stl", "s_2.stl", "--iso", "0.5", "-o", "x.t4h"],
+        "prepare": STLS,
+        "exit": 2,
+        "stderr": ["--iso", "volumes"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "a tolerance is for meshes",
+        "run": ["tet4d-mc", "a_0001.nrrd", "a_0002.nrrd", "--iso", "48.5", "--linear-tolerance", "1%", "-o", "x.t4h"],
+        "prepare": TWO,
+        "exit": 2,
+        "stderr": ["--linear-tolerance", "mesh"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "a tolerance that is no length",
+        "run": ["tet4d-mc", "s_1.stl", "s_2.stl", "--linear-tolerance", "much", "-o", "x.t4h"],
+        "prepare": STLS,
+        "exit": 2,
+        "stderr": ["--linear-tolerance", "much"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "one mesh is not enough",
+        "run": ["tet4d-mc", "s_1.stl", "-o", "x.t4h"],
+        "prepare": STLS,
+        "exit": 3,
+        "stderr": ["s_1.stl", "two"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "meshes: a dry run plans and writes nothing",
+        "run": ["tet4d-mc", "s_%d.stl", "-n", "-o", "x.t4h"],
+        "prepare": STLS,
+        "stdout": ["passes 1", "fixed_memory_bytes", "output_bytes_at_most"],
+        "absent": ["x.t4h"],
+    },
+    {
+        "name": "OBJ with vertices only in a later frame, or the build says what it lacks",
+        "shell": "tet4d-mc m_%d.obj -q -o x.t4h 2> said || grep -q TET4D_WITH_OPENMESH said",
+        "prepare": MESHES,
+        "needs": ["tet4d-mc"],
     },
 ]

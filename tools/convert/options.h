@@ -43,7 +43,8 @@ struct Options {
 inline constexpr const char* kPossible =
     "possible are: .t4h to .vtu, .hyper; .t4h with --at to .ply, .vtp, .off, .obj, .stl, .glb, .drc; .t4h with --times "
     "to a pattern such as %04d.ply or to .pvd; a mesh (.vtu, .mesh, .msh, .node) with --scalar-as-time to .t4h; frames "
-    "(.nrrd, .mha, .vti, .pvd, raw, .t4g, a directory, a pattern, -) to .t4g, .nrrd";
+    "(.nrrd, .mha, .vti, .pvd, raw, .t4g, a directory, a pattern, -) to .t4g, .nrrd; meshes with "
+    "the same faces (.obj, .off, .ply, .stl) to .t4q";
 
 [[noreturn]] inline void failUsage(const std::string& what, const std::string& remedy = kPossible) {
   throw Error(FaultCode::kUsage, "", "", what, remedy);

@@ -19,17 +19,6 @@ namespace fs = std::filesystem;
   throw Error(FaultCode::kUsage, "", "option " + option, what, remedy);
 }
 
-// The name of a file, or the times themselves.
-std::vector<double> givenTimes(const std::string& argument, const std::string& flag, cli::Session& session) {
-  std::error_code ignored;
-  if (argument.empty() || !fs::is_regular_file(argument, ignored)) return timesOf(flag, argument, "");
-  session.dependsOn(argument);
-  std::ifstream in(argument, std::ios::binary);
-  const std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in) throw Error(FaultCode::kIo, argument, "", "cannot be read", "check its permissions");
-  return timesOf(flag, text, argument);
-}
-
 std::optional<exchange::RawLayout> rawLayoutOf(const FrameOptions& options) {
   const std::pair<const char*, bool> given[] = {{"--type", !options.type.empty()},
                                                 {"--byte-order", !options.byte_order.empty()},
@@ -82,6 +71,33 @@ void nameDependencies(const std::vector<std::string>& inputs, const exchange::Fr
 }
 
 }  // namespace
+
+std::vector<double> givenTimes(const std::string& argument, const std::string& flag, cli::Session& session) {
+  std::error_code ignored;
+  if (argument.empty() || !fs::is_regular_file(argument, ignored)) return timesOf(flag, argument, "");
+  session.dependsOn(argument);
+  std::ifstream in(argument, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  if (!in) throw Error(FaultCode::kIo, argument, "", "cannot be read", "check its permissions");
+  return timesOf(flag, text, argument);
+}
+
+std::string volumeOption(const FrameOptions& options) {
+  for (const auto& [name, value] : {std::pair{"--array", &options.array},
+                                    {"--centering", &options.centering},
+                                    {"--size", &options.size},
+                                    {"--type", &options.type},
+                                    {"--byte-order", &options.byte_order},
+                                    {"--spacing", &options.spacing},
+                                    {"--origin", &options.origin},
+                                    {"--crop", &options.crop},
+                                    {"--stride", &options.stride},
+                                    {"--frames", &options.range}}) {
+    if (!value->empty()) return name;
+  }
+  if (options.skip != 0) return "--skip";
+  return options.time_stride != 1 ? "--time-stride" : "";
+}
 
 void addFrameOptions(cli::Command& command, FrameOptions& options, const std::string& times_flag) {
   const unsigned keeps = cli::kKeepsResult;

@@ -33,6 +33,12 @@ inline constexpr const char* kFramesHelp =
 // describe what files are do not enter provenance, which has a digest of the samples; those that choose a part do.
 void addFrameOptions(cli::Command& command, FrameOptions& options, const std::string& times_flag = "--times");
 
+// The times that were given, or none; names their file for --depfile.
+std::vector<double> givenTimes(const std::string& argument, const std::string& flag, cli::Session& session);
+
+// The first option given that only volumes have, empty if there is none: all but times and --allow-gaps.
+std::string volumeOption(const FrameOptions& options);
+
 // Opens the frames that `inputs` name as the options say, and names the files they come from for --depfile. Throws
 // Error{kUsage} for options that make no sense together, and as exchange::openFrames() and viewFrames().
 std::unique_ptr<exchange::FrameSource> openFrames(const std::vector<std::string>& inputs, const FrameOptions& options,

@@ -1,6 +1,7 @@
 #include "tools/mc/extract_options.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "libpreprocess/error.h"
 
@@ -38,6 +39,20 @@ hypermesh::Field fieldOf(const std::string& text, const hypermesh::Options& opti
 }
 
 }  // namespace
+
+std::string extractOption(const ExtractOptions& options) {
+  for (const auto& [name, is_given] : {std::pair{"--iso", !options.isovalues.empty()},
+                                       {"--split", options.split != "hull"},
+                                       {"--nan", options.nan != "outside"},
+                                       {"--normals", options.normals != "none"},
+                                       {"--cap", options.cap},
+                                       {"--velocity", options.velocity},
+                                       {"--pad", options.pad != 0},
+                                       {"--field", !options.fields.empty()}}) {
+    if (is_given) return name;
+  }
+  return "";
+}
 
 void addExtractOptions(cli::Command& command, ExtractOptions& options) {
   command.heading("Surface")

@@ -22,6 +22,9 @@ struct ExtractOptions {
   std::vector<std::string> fields;  // NAME=FRAMES
 };
 
+// The first option given that only volumes have, empty if there is none: all but how pages are stored.
+std::string extractOption(const ExtractOptions& options);
+
 void addExtractOptions(cli::Command& command, ExtractOptions& options);
 
 // The builder's options with the frames of the fields, which must outlive the run.
