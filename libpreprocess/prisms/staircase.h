@@ -35,7 +35,7 @@ void forEachTetAt(const Triangle& triangle, const std::array<Kept, 3>& kept, uns
   const auto earliest = [&] { return std::min({front[0], front[1], front[2]}); };
   Kept ahead = (kept[0] | kept[1] | kept[2]) & ~((Kept{2} << f) - 1);
   for (; ahead != 0 && earliest() <= f; ahead &= ahead - 1) {
-    const auto frame = static_cast<unsigned>(std::countr_zero(ahead)) & 63U;
+    const auto frame = static_cast<unsigned>(std::countr_zero(ahead));
     for (const unsigned corner : order) {
       if ((kept[corner] >> frame & 1) == 0) continue;
       if (earliest() == f) emit(front, corner, frame);
@@ -51,12 +51,13 @@ void forEachDiagonal(Kept low, Kept high, Visit visit) {
   Kept ahead = (low | high) & ((low | high) - 1);  // all but the first frame
   unsigned at_low = static_cast<unsigned>(std::countr_zero(low)), at_high = at_low;
   for (; ahead != 0; ahead &= ahead - 1) {
-    const auto frame = static_cast<unsigned>(std::countr_zero(ahead)) & 63U;
-    if ((high >> frame & 1) != 0) {
+    const auto frame = static_cast<unsigned>(std::countr_zero(ahead));
+    const Kept bit = ahead & (~ahead + 1);
+    if ((high & bit) != 0) {
       visit(at_low, frame, true);
       at_high = frame;
     }
-    if ((low >> frame & 1) != 0) {
+    if ((low & bit) != 0) {
       if (at_high != frame) visit(at_high, frame, false);
       at_low = frame;
     }

@@ -379,13 +379,6 @@ CASES = [
         "absent": ["out.vtu"],
     },
     {
-        "name": "frames from standard input",
-        "run": ["tet4d-mc", "-", "--iso", "48.5", "-o", "x.t4h"],
-        "exit": 2,
-        "stderr": ["frames cannot be read from standard input yet", "give files"],
-        "absent": ["x.t4h"],
-    },
-    {
         "name": "meshes: what moves straight is not expanded, and the result is a closed manifold",
         "shell": "tet4d-mc s_%d.stl -o x.t4h --stats s.json && tet4d-info --validate --links --json x.t4h",
         "prepare": STLS,
