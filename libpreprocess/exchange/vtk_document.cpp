@@ -189,11 +189,12 @@ std::uint64_t appendedBegin(const InputFile& file, std::uint64_t at) {
   const std::size_t got = file.readSome(at, std::as_writable_bytes(std::span(window)));
   const auto* const end = window.data() + got;
   const auto* const mark = std::find_if_not(static_cast<const char*>(window.data()), end, isBlank);
+  const std::uint64_t place = at + static_cast<std::uint64_t>(mark - window.data());
   if (mark == end || *mark != '_') {
-    throw Error(FaultCode::kBadInput, file.path(), "byte " + std::to_string(at + (mark - window.data())),
+    throw Error(FaultCode::kBadInput, file.path(), "byte " + std::to_string(place),
                 "expected the underscore before the appended data", "copy or make the file again");
   }
-  return at + static_cast<std::uint64_t>(mark - window.data()) + 1;
+  return place + 1;
 }
 
 bool isWide(const VtkDocument& document) {
