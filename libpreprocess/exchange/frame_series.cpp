@@ -1,6 +1,7 @@
 #include "libpreprocess/exchange/frame_series.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -19,6 +20,7 @@ class FileSeries final : public FrameSource {
   const GridInfo& grid() const override { return files_.front()->header().grid; }
   const std::vector<double>& times() const override { return times_; }
   void readLayers(std::size_t k, std::uint64_t z_begin, std::uint64_t z_end, std::span<std::byte> samples) override {
+    assert(k < files_.size());
     if (k != open_) files_[open_]->close();
     open_ = k;
     files_[k]->readLayers(0, z_begin, z_end, samples);

@@ -98,7 +98,7 @@ class DracoMesh {
                           unsigned components, std::span<const T> values) {
     const auto stride = static_cast<std::int64_t>(components * sizeof(T));
     draco::GeometryAttribute attribute;
-    attribute.Init(kind, nullptr, static_cast<std::int8_t>(components), type, false, stride, 0);
+    attribute.Init(kind, nullptr, static_cast<std::uint8_t>(components), type, false, stride, 0);
     const int id = out.AddAttribute(attribute, true, out.num_points());
     draco::PointAttribute* stored = out.attribute(id);
     for (std::uint32_t i = 0; i < out.num_points(); ++i) {

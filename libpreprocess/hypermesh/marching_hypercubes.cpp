@@ -289,6 +289,7 @@ void Extraction::addLastVertices(std::size_t frame) {
 }
 
 Stats Extraction::finish(std::size_t frames) {
+  for (FieldReader& field : fields_) field.expectEnd();
   if (stats_.masked_cells > 0) sink_.addFlags(kInnerBoundary);
   if (source_.isStream()) sink_.setTimes(source_.times(), static_cast<float>(frames - 1));
   stats_.frames = frames;
@@ -316,7 +317,7 @@ Stats Extraction::run() {
   std::size_t slab = 0;
   for (;; ++slab) {
     startSlab(slab);
-    for (FieldReader& field : fields_) field.readTo(slab + 1);
+    for (FieldReader& field : fields_) field.readTo(slab + 1, source_.times());
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       progress_.phase("extract", source_.times().size() - 1);
       extractPart(slab, p);

@@ -40,31 +40,44 @@ void checkAxes(const exchange::FrameSource& source, const Options& options) {
                   std::string("axis ") + "xyz"[axis], what, remedy);
     };
     if (dim < 2) bad(std::to_string(dim) + " sample; cells need two at least", "repeat the slice to give it thickness");
-    if (options.pad > kMaxIndex || dim - 1 + options.pad > kMaxIndex)
+    if (options.pad > kMaxPad) {
+      throw Error(FaultCode::kUsage, "", "option --pad",
+                  std::to_string(options.pad) + " layers, at most " + std::to_string(kMaxPad) + " are possible",
+                  "one layer closes the surface: --cap");
+    }
+    if (dim - 1 + options.pad > kMaxIndex)
       bad(std::to_string(dim) + " samples and " + std::to_string(options.pad) + " of padding; f32 positions allow " +
               std::to_string(kMaxIndex + 1),
           "cut the grid into parts");
   }
 }
 
-void checkFields(const exchange::FrameSource& source, const Options& options) {
-  for (const Field& field : options.fields) {
-    const auto& dims = field.frames->grid().dims;
-    const auto bad = [&](const std::string& what) {
-      throw Error(FaultCode::kBadInput, field.frames->frameName(0), "field " + field.name, what,
-                  "a field needs a sample for each of the frames' samples");
-    };
-    const auto text = [](const std::array<std::uint64_t, 3>& size) {
-      return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]);
-    };
-    if (dims != source.grid().dims)
-      bad("its grid is " + text(dims) + ", but the frames have " + text(source.grid().dims));
-    if (source.isStream() || field.frames->isStream()) continue;  // counted while they come
-    if (field.frames->times().size() != source.times().size()) {
-      bad(std::to_string(field.frames->times().size()) + " frames, but there are " +
-          std::to_string(source.times().size()));
-    }
+// Equal but for the last digits of decimal texts: places to a millionth of a cell.
+bool isSameGrid(const AffineMap& a, const AffineMap& b) {
+  double cell = 0, distance = 0;
+  for (const auto& axis : a.axes) cell = std::max(cell, std::hypot(axis[0], axis[1], axis[2]));
+  for (std::size_t c = 0; c < 3; ++c) {
+    distance = std::max(distance, std::abs(a.origin[c] - b.origin[c]));
+    for (std::size_t i = 0; i < 3; ++i) distance = std::max(distance, std::abs(a.axes[c][i] - b.axes[c][i]));
   }
+  return distance <= 1e-6 * cell;
+}
+
+void checkField(const exchange::FrameSource& source, const Field& field) {
+  const auto text = [](const std::array<std::uint64_t, 3>& size) {
+    return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]);
+  };
+  const exchange::GridInfo &ours = source.grid(), &theirs = field.frames->grid();
+  if (theirs.dims != ours.dims)
+    refuseField(field, "its grid is " + text(theirs.dims) + ", but the frames have " + text(ours.dims));
+  if (!isSameGrid(ours.index_to_world, theirs.index_to_world))
+    refuseField(field, "its grid's spacing, axes or origin differ from those of the frames");
+  if (source.isStream() || field.frames->isStream()) return;  // compared while they come
+  const std::vector<double>&frames = source.times(), &times = field.frames->times();
+  if (times.size() != frames.size()) {
+    refuseField(field, std::to_string(times.size()) + " frames, but there are " + std::to_string(frames.size()));
+  }
+  for (std::size_t k = 0; k < times.size(); ++k) checkFieldTime(field, k, frames);
 }
 
 }  // namespace
@@ -95,13 +108,27 @@ void refuseSingle(const exchange::FrameSource& source) {
               "give more frames, or slice a single one with a 3D tool");
 }
 
+void refuseField(const Field& field, const std::string& what) {
+  throw Error(FaultCode::kBadInput, field.frames->times().empty() ? "" : field.frames->frameName(0),
+              "field " + field.name, what, "a field needs a sample for each of the frames' samples, at their times");
+}
+
+void checkFieldTime(const Field& field, std::size_t frame, std::span<const double> times) {
+  const double theirs = field.frames->times()[frame], ours = times[frame];
+  // Decimal texts of one clock may differ in their last digits, by far less than a step.
+  const double step = times[std::max<std::size_t>(frame, 1)] - times[std::max<std::size_t>(frame, 1) - 1];
+  if (std::abs(theirs - ours) <= 1e-6 * step) return;
+  refuseField(field, "its frame " + std::to_string(frame) + " is at time " + std::to_string(theirs) +
+                         ", but that of the frames is " + std::to_string(ours));
+}
+
 void checkSource(exchange::FrameSource& source, const Options& options) {
   checkIsovalues(options);
   // A stream's second frame comes when the first is read.
   if (!source.hasFrame(0) || (!source.isStream() && !source.hasFrame(1))) refuseSingle(source);
   if (source.times().size() - 1 > kMaxIndex) refuseFrames(source, source.times().size());
   checkAxes(source, options);
-  checkFields(source, options);
+  for (const Field& field : options.fields) checkField(source, field);
 }
 
 std::vector<Writer::Column> columnsOf(const Options& options) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "libpreprocess/hypermesh/marching_plan.h"
 
 namespace tet4d::hypermesh {
 namespace {
@@ -22,10 +25,23 @@ double diagonalOf(const GridShape& shape, const AffineMap& map) {
 }  // namespace
 
 FieldReader::FieldReader(const Field& field, Simd simd)
-    : kernels_(makeSampleKernels(field.frames->grid().type, {}, simd)), ring_(*field.frames, 2, 1 << 20) {}
+    : field_(field),
+      kernels_(makeSampleKernels(field.frames->grid().type, {}, simd)),
+      ring_(*field.frames, 2, 1 << 20) {}
 
-void FieldReader::readTo(std::size_t frame) {
-  while (ring_.framesRead() <= frame) ring_.readNext([](std::uint64_t, std::uint64_t) {});
+void FieldReader::readTo(std::size_t frame, std::span<const double> times) {
+  while (ring_.framesRead() <= frame) {
+    const std::size_t next = ring_.framesRead();
+    if (!field_.frames->hasFrame(next))
+      refuseField(field_, "it ends after " + std::to_string(next) + " frames, but there are more");
+    checkFieldTime(field_, next, times);
+    ring_.readNext([](std::uint64_t, std::uint64_t) {});
+  }
+}
+
+void FieldReader::expectEnd() {
+  if (field_.frames->hasFrame(ring_.framesRead()))
+    refuseField(field_, "it has more frames than the " + std::to_string(ring_.framesRead()) + " there are");
 }
 
 FieldFrames FieldReader::frames() const {

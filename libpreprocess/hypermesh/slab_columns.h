@@ -17,12 +17,16 @@ namespace tet4d::hypermesh {
 class FieldReader {
  public:
   FieldReader(const Field& field, Simd simd);
-  // Makes frames up to `frame` present; the two latest stay.
-  void readTo(std::size_t frame);
+  // Makes frames up to `frame` present, the two latest; `times`: of the frames known, at least two. Throws
+  // Error{kBadInput} that names the field if it has no such frame, or has it at another time.
+  void readTo(std::size_t frame, std::span<const double> times);
+  // Throws Error{kBadInput} if the field has more frames than were read.
+  void expectEnd();
   FieldFrames frames() const;
   std::uint64_t digest() const { return ring_.digest(); }
 
  private:
+  const Field& field_;
   std::unique_ptr<SampleKernels> kernels_;
   FrameRing ring_;
 };

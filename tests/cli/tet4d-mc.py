@@ -80,6 +80,23 @@ CASES = [
         "absent": ["x.t4h"],
     },
     {
+        "name": "a field may not come from standard input, nor leave its folder in the file",
+        "shell": "mkdir deep; cp a_*.nrrd deep; tet4d-mc a_0001.nrrd a_0002.nrrd --iso 48.5 --field heat=deep -q -o x.t4h; "
+        "! grep -q deep x.t4h; cat a_*.nrrd | tet4d-mc - --iso 48.5 --field heat=- -o y.t4h",
+        "prepare": TWO,
+        "exit": 2,
+        "stderr": ["--field", "standard input"],
+        "absent": ["y.t4h"],
+    },
+    {
+        "name": "a field that ends before a stream is refused",
+        "shell": "cat a_*.nrrd | tet4d-mc - --iso 48.5 --field heat=short.nrrd --times 0,1,2 -o y.t4h",
+        "prepare": {**THREE, "short.nrrd": frame("1", 0.5)},
+        "exit": 3,
+        "stderr": ["field heat", "ends after 1 frames"],
+        "absent": ["y.t4h"],
+    },
+    {
         "name": "a field may not take the name of a column",
         "run": ["tet4d-mc", "a_0001.nrrd", "a_0002.nrrd", "--iso", "48.5", "--field", "velocity=.", "-o", "x.t4h"],
         "prepare": TWO,

@@ -218,6 +218,7 @@ TEST(MarchingOptions, IsovaluesThatCannotBeAreRefused) {
   EXPECT_THROW(extract(source, {.iso = 1, .more_isos = {2, 1}}), Error);
   EXPECT_THROW(extract(source, {.iso = 1, .more_isos = {std::numeric_limits<double>::infinity()}}), Error);
   EXPECT_THROW(extract(source, {.iso = 0, .more_isos = std::vector<double>(64, 1.0)}), Error);
+  EXPECT_THROW(extract(source, {.iso = 1, .pad = 4097}), Error);
 }
 
 // ---------------------------------------------------------------- memory

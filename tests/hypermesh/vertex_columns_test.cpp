@@ -190,18 +190,37 @@ TEST(VertexColumns, AFieldIsSampledLinearly) {
   }
 }
 
-TEST(VertexColumns, AFieldOfAnotherSizeIsRefused) {
-  MemoryFrames<float> source({4, 4, 4}, 3, [](auto x, auto, auto, auto) { return static_cast<float>(x); });
-  MemoryFrames<float> narrow({4, 4, 3}, 3, [](auto, auto, auto, auto) { return 0.0F; });
-  MemoryFrames<float> brief({4, 4, 4}, 2, [](auto, auto, auto, auto) { return 0.0F; });
-  for (MemoryFrames<float>* field : {&narrow, &brief}) {
-    try {
-      extract(source, {.iso = 0.5, .fields = {{"heat", field}}});
-      FAIL() << "accepted";
-    } catch (const Error& error) {
-      EXPECT_EQ(error.fault().place, "field heat");
-    }
+// The field's frames are what the frames' are; otherwise the field is named.
+void expectRefused(MemoryFrames<float> source, MemoryFrames<float> field, const std::string& what) {
+  try {
+    extract(source, {.iso = 1.5, .fields = {{"heat", &field}}});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.fault().place, "field heat");
+    EXPECT_NE(error.fault().what.find(what), std::string::npos) << error.fault().what;
   }
+}
+
+TEST(VertexColumns, AFieldThatIsNotOnTheFramesIsRefused) {
+  const auto make = [](std::array<std::uint64_t, 3> dims, std::size_t frames) {
+    return MemoryFrames<float>(dims, frames, [](auto x, auto, auto, auto) { return static_cast<float>(x); });
+  };
+  const MemoryFrames<float> source = make({4, 4, 4}, 3);
+  MemoryFrames<float> stream = source;
+  stream.asStream();
+  AffineMap shifted;
+  shifted.origin = {0.5, 0, 0};
+  for (const MemoryFrames<float>& frames : {source, stream}) {
+    expectRefused(frames, make({4, 4, 3}, 3), "grid is 4 x 4 x 3");
+    expectRefused(frames, make({4, 4, 4}, 3).map(shifted), "origin");
+    expectRefused(frames, make({4, 4, 4}, 3).times({0, 1, 2.5}), "at time");
+  }
+  expectRefused(source, make({4, 4, 4}, 2), "2 frames");
+  expectRefused(stream, make({4, 4, 4}, 1), "ends after 1");
+  expectRefused(stream, make({4, 4, 4}, 2), "ends after 2");
+  expectRefused(stream, make({4, 4, 4}, 4), "more frames than the 3");
+  MemoryFrames<float> streamed_field = make({4, 4, 4}, 2);
+  expectRefused(source, streamed_field.asStream(), "ends after 2");
 }
 
 }  // namespace

@@ -100,7 +100,11 @@ Extraction extractionOf(const ExtractOptions& given, const frames::FrameOptions&
   options.page_codec = given.codec == "zstd" ? paged::Codec::kZstd : paged::Codec::kRaw;
   for (const std::string& text : given.fields) {
     hypermesh::Field field = fieldOf(text, options);
-    extraction.fields.push_back(frames::openFrames({text.substr(text.find('=') + 1)}, frame_options, session));
+    const std::string input = text.substr(text.find('=') + 1);
+    if (input == "-") {
+      throw Error(FaultCode::kUsage, "", "option --field", "cannot come from standard input", "give files");
+    }
+    extraction.fields.push_back(frames::openFrames({input}, frame_options, session));
     field.frames = extraction.fields.back().get();
     options.fields.push_back(field);
   }
