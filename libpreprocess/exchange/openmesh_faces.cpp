@@ -105,11 +105,28 @@ class FaceImporter final : public om::IO::BaseImporter {
   std::size_t vertices_ = 0, faces_ = 0;
 };
 
-// OFF as OpenMesh takes it: it knows no comments and no empty lines.
-std::string withoutComments(std::string_view bytes, const std::string& path) {
-  std::string text;
-  for (TextLines lines(bytes, path); lines.nextFilled();) {
-    for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) text.append(word).push_back(' ');
+// Appends the next words of a line, each with a blank behind.
+void copyWords(TextLines& lines, std::uint64_t count, std::string& text) {
+  for (std::uint64_t i = 0; i < count; ++i) text.append(lines.word()).push_back(' ');
+}
+
+// OFF that scanOff() has passed as OpenMesh takes it: it knows no comments, no empty lines, no counts on the first line
+// and not every number that may stand behind the corners. The words that remain are the file's.
+std::string plainOff(std::string_view bytes, const std::string& path) {
+  TextLines lines(bytes, path);
+  lines.nextFilled();
+  lines.word();
+  if (TextLines(lines).word().empty()) lines.nextFilled();
+  const std::uint64_t vertices = lines.count("the count of vertices"), faces = lines.count("the count of faces");
+  std::string text = "OFF\n" + std::to_string(vertices) + " " + std::to_string(faces) + " 0\n";
+  for (std::uint64_t v = 0; v < vertices && lines.nextFilled(); ++v) {
+    copyWords(lines, 3, text);
+    text.back() = '\n';
+  }
+  for (std::uint64_t f = 0; f < faces && lines.nextFilled(); ++f) {
+    const std::uint64_t corners = lines.count("the face's count of corners");
+    text.append(std::to_string(corners)).push_back(' ');
+    copyWords(lines, corners, text);
     text.back() = '\n';
   }
   return text;
@@ -132,7 +149,7 @@ void compareWithOpenMesh(const std::string& path, std::string_view bytes, const 
   try {
     const std::string format = surfaceFormatOf(path);
     if (format == "OFF") {
-      std::istringstream text(withoutComments(bytes, path));
+      std::istringstream text(plainOff(bytes, path));
       is_read = readerOf(format).read(text, importer, options);
     } else {
       is_read = readerOf(format).read(path, importer, options);

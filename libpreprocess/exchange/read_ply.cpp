@@ -232,6 +232,11 @@ void checkElement(const Element& element, const TextLines& lines) {
   }
   if (element.name == "face" && element.count > 0 && has(namesVertices) != 1)
     lines.fail("the faces must have one list vertex_indices");
+  if (element.name == "face" && element.count > 0 && !namesVertices(element.properties.front())) {
+    lines.fail(
+        "the faces have " + element.properties.front().name + " in front of vertex_indices, which OpenMesh misreads",
+        "write vertex_indices as the faces' first property");
+  }
 }
 
 }  // namespace

@@ -48,6 +48,11 @@ class ArrayFile {
   std::optional<GzipStream> stream_;
 };
 
+constexpr const char* kKeys =
+    "needed are the counts vertices, triangles, frames and the names triangles_file (X.i32), vertices_file (X.f32, "
+    "X.f64 "
+    "or X.i16); scale and times may be left out";
+
 struct Description {
   std::uint64_t vertices = 0, triangles = 0, frames = 0;
   std::string triangles_file, vertices_file;
@@ -55,30 +60,93 @@ struct Description {
   std::vector<double> times;
 };
 
-Description describe(const std::string& path) {
-  const auto fail = [&](const std::string& what) {
-    throw Error(FaultCode::kBadInput, path, "", what, "write vertices, triangles, frames and the names of the arrays");
-  };
-  const InputFile file(path);
-  if (file.size() > kMostJsonBytes) fail("is too large for a description of arrays");
-  std::string text(file.size(), '\0');
-  file.read(0, std::as_writable_bytes(std::span(text)));
-  Description d;
-  try {
-    const auto json = nlohmann::json::parse(text);
-    d.vertices = json.at("vertices").get<std::uint64_t>();
-    d.triangles = json.at("triangles").get<std::uint64_t>();
-    d.frames = json.at("frames").get<std::uint64_t>();
-    d.triangles_file = json.at("triangles_file").get<std::string>();
-    d.vertices_file = json.at("vertices_file").get<std::string>();
-    d.scale = json.value("scale", 1.0);
-    if (json.contains("times")) d.times = json.at("times").get<std::vector<double>>();
-  } catch (const nlohmann::json::exception& error) {
-    fail(error.what());
+// The keys of a description, each checked for what it must be.
+class Keys {
+ public:
+  explicit Keys(const std::string& path) : path_(path) {
+    const InputFile file(path);
+    if (file.size() > kMostJsonBytes) fail("", "is too large for a description of arrays");
+    std::string text(file.size(), '\0');
+    file.read(0, std::as_writable_bytes(std::span(text)));
+    try {
+      json_ = nlohmann::json::parse(text);
+    } catch (const nlohmann::json::parse_error& error) {
+      fail("byte " + std::to_string(error.byte), "is no JSON from here on");
+    } catch (const nlohmann::json::exception&) {
+      fail("", "is no JSON: a number in it is beyond float64");
+    }
+    if (!json_.is_object()) fail("", "holds " + found(json_) + ", not an object of keys");
   }
-  if (d.vertices == 0 || d.vertices > std::uint64_t{1} << 32) fail("has an impossible count of vertices");
-  if (d.triangles > std::uint64_t{1} << 40) fail("has an impossible count of triangles");
-  if (d.frames == 0 || d.frames > kMaxFrames) fail("has an impossible count of frames");
+  std::uint64_t count(const char* key, std::uint64_t least, std::uint64_t most) const {
+    const nlohmann::json& value = needed(key);
+    const std::uint64_t number = value.is_number_unsigned() ? value.get<std::uint64_t>() : 0;
+    if (!value.is_number_unsigned() || number < least || number > most) {
+      fail(key, "is " + found(value) + ", not a count from " + std::to_string(least) + " to " + std::to_string(most));
+    }
+    return number;
+  }
+  std::string name(const char* key) const {
+    const nlohmann::json& value = needed(key);
+    if (!value.is_string() || value.get_ref<const std::string&>().empty())
+      fail(key, "is " + found(value) + ", not a file's name");
+    return value.get<std::string>();
+  }
+  double scale() const {
+    const auto at = json_.find("scale");
+    if (at == json_.end()) return 1;
+    if (!at->is_number() || at->get<double>() == 0) fail("scale", "is " + found(*at) + ", not a number other than 0");
+    return at->get<double>();
+  }
+  std::vector<double> times(std::uint64_t frames) const {
+    std::vector<double> times;
+    const auto at = json_.find("times");
+    if (at == json_.end()) return times;
+    if (!at->is_array()) fail("times", "is " + found(*at) + ", not an array of numbers");
+    if (at->size() != frames) {
+      fail("times", "has " + std::to_string(at->size()) + " times, but frames is " + std::to_string(frames));
+    }
+    for (const nlohmann::json& value : *at) {
+      const std::string place = "times " + std::to_string(times.size());
+      if (!value.is_number()) fail(place, "is " + found(value) + ", not a number");
+      if (!times.empty() && value.get<double>() <= times.back())
+        fail(place, "is " + found(value) + ", not later than the one before");
+      times.push_back(value.get<double>());
+    }
+    return times;
+  }
+
+ private:
+  // A value for messages: "-1", "a text", "an array", ….
+  static std::string found(const nlohmann::json& value) {
+    if (value.is_number() || value.is_boolean()) return value.dump();
+    if (value.is_string()) return value.get_ref<const std::string&>().empty() ? "an empty text" : "a text";
+    return value.is_null() ? "null" : value.is_array() ? "an array" : "an object";
+  }
+  const nlohmann::json& needed(const char* key) const {
+    const auto at = json_.find(key);
+    if (at == json_.end()) fail(key, "is missing");
+    return *at;
+  }
+  // `key` may also be a place of another kind, or empty.
+  [[noreturn]] void fail(const std::string& key, const std::string& what) const {
+    const std::string place = key.empty() || key.starts_with("byte ") ? key : "key " + key;
+    throw Error(FaultCode::kBadInput, path_, place, what, kKeys);
+  }
+
+  std::string path_;
+  nlohmann::json json_;
+};
+
+Description describe(const std::string& path) {
+  const Keys keys(path);
+  Description d;
+  d.vertices = keys.count("vertices", 1, std::uint64_t{1} << 32);
+  d.triangles = keys.count("triangles", 1, std::uint64_t{1} << 40);
+  d.frames = keys.count("frames", 1, kMaxFrames);
+  d.triangles_file = keys.name("triangles_file");
+  d.vertices_file = keys.name("vertices_file");
+  d.scale = keys.scale();
+  d.times = keys.times(d.frames);
   return d;
 }
 

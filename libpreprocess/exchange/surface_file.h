@@ -21,7 +21,7 @@ struct PolygonMesh {
   }
 };
 
-// A face for messages: "0 4 2".
+// A face for messages: "0 4 2", cut behind eight corners; "no corners".
 std::string faceText(std::span<const std::uint32_t> face);
 
 // "OBJ", "OFF", "PLY", "STL" by a file's suffix, or empty. No file is opened.

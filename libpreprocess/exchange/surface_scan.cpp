@@ -75,10 +75,10 @@ std::optional<std::int64_t> wholeNumberOf(std::string_view word) {
 }
 
 const char* endFace(PolygonMesh& mesh) {
-  const std::uint64_t begin = mesh.ends.empty() ? 0 : mesh.ends.back();
   mesh.ends.push_back(mesh.corners.size());
   const auto face = mesh.face(mesh.ends.size() - 1);
-  if (mesh.corners.size() - begin < 3) return "the face has fewer than three corners";
+  if (face.empty()) return "the face has no corners";
+  if (face.size() < 3) return "the face has fewer than three corners";
   const auto sameTwice = [](std::span<const std::uint32_t> sorted) {
     return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
   };
@@ -88,11 +88,12 @@ const char* endFace(PolygonMesh& mesh) {
 }
 
 std::string faceText(std::span<const std::uint32_t> face) {
-  std::string text;
-  for (const std::uint32_t corner : face) {
-    if (!text.empty()) text.push_back(' ');
-    text.append(std::to_string(corner));
-  }
+  constexpr std::size_t kMostCorners = 8;
+  if (face.empty()) return "no corners";
+  std::string text = std::to_string(face.front());
+  for (std::size_t i = 1; i < std::min(face.size(), kMostCorners); ++i)
+    text.append(" ").append(std::to_string(face[i]));
+  if (face.size() > kMostCorners) text.append(" ... (").append(std::to_string(face.size())).append(" corners)");
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include "formats/surface_sequence.h"
 #include "libpreprocess/error.h"
 #include "libpreprocess/exchange/file_series.h"
+#include "libpreprocess/exchange/frame_file.h"
 #include "libpreprocess/exchange/frame_series.h"
 #include "libpreprocess/exchange/surface_file.h"
 
@@ -42,20 +43,38 @@ class SequenceFrames final : public SurfaceSource {
 
 bool isSequenceJson(const std::string& path) { return path.ends_with(".json"); }
 
+bool isSurfaceName(const std::string& path) {
+  return !surfaceFormatOf(path).empty() || path.ends_with(".t4q") || isSequenceJson(path);
+}
+
 }  // namespace
 
 std::string surfaceSuffixes() { return ".obj, .off, .ply, .stl"; }
 
 bool areSurfaces(const std::vector<std::string>& inputs) {
   if (inputs.empty()) return false;
-  const std::string& input = inputs.front();
   std::error_code ignored;
-  if (!fs::is_directory(input, ignored)) {
-    return !surfaceFormatOf(input).empty() || input.ends_with(".t4q") || isSequenceJson(input);
+  std::string mesh, other;  // the first of each kind
+  const auto take = [](std::string& first, const std::string& name) {
+    if (first.empty() || naturalLess(name, first)) first = name;
+  };
+  const bool is_directory = inputs.size() == 1 && fs::is_directory(inputs.front(), ignored);
+  if (is_directory) {
+    for (const auto& entry : fs::directory_iterator(inputs.front(), ignored)) {
+      const std::string name = entry.path().string();
+      if (!surfaceFormatOf(name).empty()) take(mesh, name);
+      if (!frameFormatOf(name).empty()) take(other, name);
+    }
+  } else {
+    for (const std::string& input : inputs) take(isSurfaceName(input) ? mesh : other, input);
   }
-  for (const auto& entry : fs::directory_iterator(input, ignored))
-    if (!surfaceFormatOf(entry.path().string()).empty()) return true;
-  return false;
+  if (!mesh.empty() && !other.empty()) {
+    throw Error(FaultCode::kBadInput, is_directory ? inputs.front() : "", "",
+                std::string(is_directory ? "a directory" : "a list") + " of two kinds: " + mesh + " is a mesh, " +
+                    other + (is_directory ? " a volume" : " is none"),
+                "give those of one kind, by a pattern such as a_%04d" + fs::path(mesh).extension().string());
+  }
+  return !mesh.empty();
 }
 
 AffineMap mapNear(std::span<const std::array<double, 3>> points) {

@@ -43,7 +43,8 @@ struct SurfaceSourceOptions {
   std::vector<double> times;  // overrides those of the input, if not empty
 };
 
-// Whether inputs given on a command line are surfaces, by their names and, of a directory, by what it holds.
+// Whether inputs given on a command line are surfaces, by their names and, of a directory, by what it holds. Throws
+// Error naming one file of each kind where meshes and volumes are mixed.
 bool areSurfaces(const std::vector<std::string>& inputs);
 // ".obj, .off, …", for messages.
 std::string surfaceSuffixes();
@@ -53,8 +54,7 @@ std::string surfaceSuffixes();
 //   OBJ, OFF and PLY the others have the same faces, or none. STL corners weld where they coincide, bit by bit, in
 //   every frame: all files are read for that here;
 // - sequence.json beside raw arrays: {"vertices", "triangles", "frames", "triangles_file" (.i32), "vertices_file"
-// (.f32,
-//   .f64, or .i16 with "scale"), "times" (may be left out)}, little-endian, as they are or gzip;
+//   (.f32, .f64 or .i16), and, where wanted, "scale", "times"}, little-endian, as they are or gzip;
 // - a .t4q.
 // Throws Error naming file and place. Reads the first frame, of STL all.
 std::unique_ptr<SurfaceSource> openSurfaces(const std::vector<std::string>& inputs,
