@@ -2,6 +2,7 @@
 #include <string>
 
 #include "libpreprocess/exchange/read_tet_mesh.h"
+#include "libpreprocess/exchange/slice_columns.h"
 #include "libpreprocess/exchange/surface_source.h"
 #include "libpreprocess/exchange/write_mesh.h"
 #include "tools/common/cli.h"
@@ -15,6 +16,16 @@ namespace {
 
 using namespace tet4d;
 using namespace tet4d::convert;
+
+// What the formats of whole hypermeshes do not hold.
+void noteLeftOut(cli::Session& session, const hypermesh::File& mesh) {
+  std::string names;
+  for (const auto& column : mesh.columns()) names += (names.empty() ? "columns " : ", ") + exchange::columnName(column);
+  if (mesh.parts().size() > 1) names += names.empty() ? "parts" : " and parts";
+  if (names.empty()) return;
+  session.note(names + " are not written to " + suffixOf(session.options().output) +
+               ": they are in slices (--at, --times)");
+}
 
 void writeWhole(cli::Session& session, const hypermesh::File& mesh) {
   const std::string& output = session.options().output;
@@ -31,6 +42,7 @@ void writeWhole(cli::Session& session, const hypermesh::File& mesh) {
   session.progress().step(1);
   session.stats().count("vertices", mesh.header().vertices);
   session.note(std::to_string(mesh.header().vertices) + " vertices, " + std::to_string(mesh.header().tets) + " tets");
+  noteLeftOut(session, mesh);
 }
 
 void convertHypermesh(cli::Session& session, const Options& options) {
@@ -97,7 +109,7 @@ int main(int argc, char** argv) {
       .flag("--velocity", "write the velocity along the normal: the column, else computed from the tetrahedra",
             &options.velocity)
       .option("--part", "N", "only part N, counted from 0, of a hypermesh of several isovalues", &options.part)
-      .option("--draco-bits", "N", "of a .drc's positions and columns, 1 to 30; normals have four fewer",
+      .option("--draco-bits", "N", "of a .drc's positions and columns, 1 to 30 (14); normals have four fewer",
               &options.draco_bits)
       .heading("Meshes of tetrahedra")
       .option("--scalar-as-time", "NAME", "a hypermesh whose slice at v is the isosurface of v: an array, or x, y, z",

@@ -93,6 +93,20 @@ CASES = [
         "absent": ["x.drc"],
     },
     {
+        "name": "bits where there is no Draco",
+        "shell": "for o in '--at 0.8 -o x.ply' '--times 0f:1f:1f -o x.pvd' '-o x.vtu'; do code=0; "
+        "tet4d-convert {files}/columns.t4h --draco-bits 12 $o || code=$?; test $code = 2; done",
+        "stderr": ["--draco-bits is for slices written as .drc", "--draco-bits is for slices"],
+        "absent": ["x.ply", "x.pvd", "x.vtu"],
+    },
+    {
+        "name": "a whole hypermesh leaves columns and parts behind, and says so",
+        "shell": "tet4d-convert {files}/columns.t4h -o c.vtu; tet4d-convert {files}/parts.t4h -o p.vtu; "
+        "tet4d-convert {files}/mesh.t4h -o m.vtu 2> plain; ! grep 'not written' plain",
+        "stderr": ["columns normal, velocity, heat are not written to .vtu: they are in slices",
+                   "parts are not written to .vtu"],
+    },
+    {
         "name": "one part of a hypermesh of two isovalues",
         "shell": "for p in 0 1; do tet4d-convert {files}/parts.t4h --at 0.8 --part $p -q -o p$p.ply; done; "
         "tet4d-convert {files}/parts.t4h --at 0.8 -q -o both.ply; tet4d-convert {files}/mesh.t4h --at 0.8 --part 0 -q -o lone.ply",
@@ -269,6 +283,11 @@ CASES = [
         "file": {"m.ply": ["element vertex 5", "element face 3"]},
         "json_file": {"s.json": {"counts.tets": 2, "counts.vertices": 5, "counts.frames": 3}},
         "needs": ["tet4d-info", "dyntri-build"],
+    },
+    {
+        "name": "a mesh called otherwise makes the same file",
+        "shell": MESH + "cp m.mesh n.mesh; tet4d-convert m.mesh --scalar-as-time z -q -o m.t4h; "
+        "tet4d-convert n.mesh --scalar-as-time z -q -o n.t4h; cmp m.t4h n.t4h",
     },
     {
         "name": "a scalar that is not there names the nearest",

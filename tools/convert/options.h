@@ -19,8 +19,7 @@ struct Options {
   bool normals = false;
   std::string normals_from = "slice", columns = "none";
   bool velocity = false;
-  std::uint64_t draco_bits = 14;
-  std::optional<std::uint64_t> part;
+  std::optional<std::uint64_t> draco_bits, part;
   // Meshes with a scalar as time.
   std::string scalar_as_time;
   std::uint64_t sweep_frames = 65;
@@ -36,6 +35,7 @@ struct Options {
     if (normals_from != "slice") return "--normals-from";
     if (columns != "none") return "--columns";
     if (velocity) return "--velocity";
+    if (draco_bits) return "--draco-bits";
     return part ? "--part" : "";
   }
 };

@@ -51,7 +51,7 @@ void convertScalarAsTime(cli::Session& session, const Options& options) {
   hypermesh::Writer writer = unwrap(hypermesh::Writer::create(session.options().output, sweep.header(), sweep.times(),
                                                               {}, codec, session.options().force));
   sweep.write(writer, session.progress());
-  const cli::Input input{options.inputs.front(), cli::fileDigest(options.inputs.front())};
+  const cli::Input input{"mesh", cli::fileDigest(options.inputs.front())};  // whatever the file is called
   unwrap(writer.close(session.provenance({&input, 1})));
   report(session, sweep, other_cells);
 }

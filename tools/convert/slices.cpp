@@ -131,7 +131,7 @@ class SliceWriter {
     file_.as_double = exchange::needsDouble(mesh.header().index_to_world, mesh.header().domain);
     file_.origin = mesh.header().index_to_world.origin;
     file_.force = session.options().force;
-    file_.draco_bits = static_cast<unsigned>(options.draco_bits);
+    if (options.draco_bits) file_.draco_bits = static_cast<unsigned>(*options.draco_bits);
   }
 
   void write(const std::string& path, const SliceTime& at) {
@@ -215,8 +215,10 @@ void checkSliceOutput(const Options& options, const std::string& output) {
 void writeSlices(cli::Session& session, const hypermesh::File& mesh, const Options& options) {
   const std::string& output = session.options().output;
   checkSliceOutput(options, output);
-  if (options.draco_bits < 1 || options.draco_bits > 30) {
-    failUsage("--draco-bits: " + std::to_string(options.draco_bits) + " is not from 1 to 30", "14 is usual");
+  if (options.draco_bits && suffixOf(output) != ".drc")
+    failUsage("--draco-bits is for slices written as .drc", "leave it out, or write X.drc");
+  if (options.draco_bits && (*options.draco_bits < 1 || *options.draco_bits > 30)) {
+    failUsage("--draco-bits: " + std::to_string(*options.draco_bits) + " is not from 1 to 30", "14 is usual");
   }
   Contents contents = contentsOf(mesh, options);
   checkFormat(suffixOf(output) == ".pvd" ? "x.vtp" : output, contents);

@@ -69,7 +69,8 @@ void warnOfSurface(const exchange::SurfaceInfo& info, const prisms::Stats& stats
   }
 }
 
-void report(const exchange::SurfaceInfo& info, const prisms::Stats& stats, cli::Session& session) {
+// `tolerant`: a tolerance was given, so what it saved is told even where that is nothing.
+void report(const exchange::SurfaceInfo& info, const prisms::Stats& stats, bool tolerant, cli::Session& session) {
   session.stats().count("vertices", stats.vertices);
   session.stats().count("tets", stats.tets);
   session.stats().count("tets_expanded", stats.tets_expanded);
@@ -84,9 +85,9 @@ void report(const exchange::SurfaceInfo& info, const prisms::Stats& stats, cli::
   warnOfSurface(info, stats, session);
   std::string line = std::to_string(stats.frames) + " frames of " + std::to_string(stats.triangles) + " triangles -> " +
                      std::to_string(stats.tets) + " tetrahedra, " + std::to_string(stats.vertices) + " vertices";
-  if (stats.tets < stats.tets_expanded) {
-    line += "; " + std::to_string(stats.tets_expanded) + " if every frame were kept; error at frames " +
-            shortText(stats.error_measured) + " (measured)";
+  if (tolerant || stats.tets < stats.tets_expanded) {
+    line += "; " + std::to_string(stats.tets_expanded) + " if every frame were kept; tolerance " +
+            shortText(stats.tolerance) + ", error at frames " + shortText(stats.error_measured) + " (measured)";
   }
   session.note(line);
 }
@@ -133,7 +134,7 @@ int buildMeshSequence(cli::Session& session, const std::vector<std::string>& inp
   std::snprintf(digest, sizeof digest, "%016llx", static_cast<unsigned long long>(stats.input_xxh3));
   const cli::Input input{"surfaces", digest};  // whatever the files are called
   unwrap(writer.close(session.provenance({&input, 1})));
-  report(source->info(), stats, session);
+  report(source->info(), stats, !given.tolerance.empty(), session);
   return 0;
 }
 
