@@ -92,6 +92,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
+  if (bytes.empty()) return;  // nothing may stand at a null pointer, which fwrite does not take
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail(errno, "cannot be written");
   bytes_ += bytes.size();
 }
