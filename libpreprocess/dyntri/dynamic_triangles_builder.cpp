@@ -40,7 +40,7 @@ void appendTriangles(const hypermesh::Tet& tet, std::span<const Vec4f> positions
 // The numbers depend on the order of the calls alone, never on where the keys come to lie.
 class FirstUse {
  public:
-  FirstUse() { slots_.resize(std::size_t{1} << kFirstBits, {kFree, 0}); }
+  FirstUse() : slots_(std::size_t{1} << kFirstBits, Slot{kFree, 0}) {}
   // The number of `key`; `fresh` says that it was given just now.
   std::uint32_t number(EdgeKey key, bool& fresh) {
     std::size_t at = place(key);
