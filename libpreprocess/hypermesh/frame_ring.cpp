@@ -12,7 +12,7 @@ FrameRing::FrameRing(exchange::FrameSource& source, std::size_t frames, std::uin
     slots_.push_back(std::make_unique_for_overwrite<std::byte[]>(source.grid().frameBytes()));
 }
 
-std::size_t FrameRing::readNext(const std::function<void(std::uint64_t, std::uint64_t)>& look) {
+std::size_t FrameRing::readNext(const Look& look) {
   const exchange::GridInfo& grid = source_.grid();
   const std::uint64_t layer = grid.layerBytes(), layers = grid.dims[2];
   const std::uint64_t run = std::max<std::uint64_t>(1, run_bytes_ / std::max<std::uint64_t>(1, layer));
@@ -23,8 +23,7 @@ std::size_t FrameRing::readNext(const std::function<void(std::uint64_t, std::uin
     const std::uint64_t end = std::min(layers, z + run);
     const std::span<std::byte> samples(into + z * layer, (end - z) * layer);
     source_.readLayers(frame, z, end, samples);
-    stream_.add(samples);
-    look(z, end);
+    look(z, end, [&] { stream_.add(samples); });
   }
   digests_.push_back(stream_.digest());
   return frame;

@@ -19,9 +19,10 @@ class FrameRing {
   // Keeps the latest `frames` frames; reads them in runs of about `run_bytes`.
   FrameRing(exchange::FrameSource& source, std::size_t frames, std::uint64_t run_bytes);
 
-  // Reads the next frame, whose number it returns; `look(z_begin, z_end)` is called for each run of layers when it is
-  // there. Throws what the source throws.
-  std::size_t readNext(const std::function<void(std::uint64_t, std::uint64_t)>& look);
+  // Takes a run of layers that is there, and must call `digest` once, before or beside its own work, on any thread.
+  using Look = std::function<void(std::uint64_t z_begin, std::uint64_t z_end, const std::function<void()>& digest)>;
+  // Reads the next frame, whose number it returns, run by run. Throws what the source throws.
+  std::size_t readNext(const Look& look);
   std::size_t framesRead() const { return digests_.size(); }
   // The samples of one of the latest frames. Aligned for every type.
   const std::byte* samples(std::size_t frame) const { return slots_[frame % slots_.size()].get(); }

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -58,7 +59,8 @@ class Extraction {
 
  private:
   void read();
-  void classifyLayers(std::size_t frame, std::uint64_t z_begin, std::uint64_t z_end);
+  void classifyLayers(std::size_t frame, std::uint64_t z_begin, std::uint64_t z_end,
+                      const std::function<void()>& digest);
   void classifyRow(std::size_t frame, std::uint64_t y, std::uint64_t z, std::uint64_t* scratch, SampleRange& range);
   void refuseNan(std::size_t frame) const;
   void startSlab(std::size_t slab);
@@ -131,13 +133,16 @@ void Extraction::classifyRow(std::size_t frame, std::uint64_t y, std::uint64_t z
     shiftRow(std::span(nans, words), shape_.pad, std::span(&nan[start], shape_.rowWords()));
 }
 
-void Extraction::classifyLayers(std::size_t frame, std::uint64_t z_begin, std::uint64_t z_end) {
+// Digesting is one task among those of the layers: the digest of a frame cannot be shared out.
+void Extraction::classifyLayers(std::size_t frame, std::uint64_t z_begin, std::uint64_t z_end,
+                                const std::function<void()>& digest) {
   std::vector<SampleRange> ranges(z_end - z_begin);
-  executor_.run(z_end - z_begin, [&](std::size_t i) {
-    const std::uint64_t z = z_begin + i + shape_.pad;
+  executor_.run(z_end - z_begin + 1, [&](std::size_t task) {
+    if (task == 0) return digest();
+    const std::uint64_t z = z_begin + (task - 1) + shape_.pad;
     std::vector<std::uint64_t> scratch(shape_.pad == 0 ? 0 : (parts_.size() + 1) * shape_.rowWords());
     for (std::uint64_t y = shape_.pad; y < shape_.dims[1] - shape_.pad; ++y)
-      classifyRow(frame, y, z, scratch.data(), ranges[i]);
+      classifyRow(frame, y, z, scratch.data(), ranges[task - 1]);
   });
   for (const SampleRange& range : ranges) range_.add(range);
 }
@@ -157,7 +162,9 @@ void Extraction::read() {
   const std::uint64_t nans_before = range_.nan_samples;
   const bool keeps_nan = options_.nan != NanRule::kOutside;
   if (keeps_nan) nanOf(frame).assign(shape_.words(), 0);
-  ring_.readNext([&](std::uint64_t z_begin, std::uint64_t z_end) { classifyLayers(frame, z_begin, z_end); });
+  ring_.readNext([&](std::uint64_t z_begin, std::uint64_t z_end, const std::function<void()>& digest) {
+    classifyLayers(frame, z_begin, z_end, digest);
+  });
   if (range_.nan_samples == nans_before) nanOf(frame).clear();
   if (options_.nan == NanRule::kError && !nanOf(frame).empty()) refuseNan(frame);
   progress_.step(frame + 1);

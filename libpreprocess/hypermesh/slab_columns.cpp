@@ -35,7 +35,7 @@ void FieldReader::readTo(std::size_t frame, std::span<const double> times) {
     if (!field_.frames->hasFrame(next))
       refuseField(field_, "it ends after " + std::to_string(next) + " frames, but there are more");
     checkFieldTime(field_, next, times);
-    ring_.readNext([](std::uint64_t, std::uint64_t) {});
+    ring_.readNext([](std::uint64_t, std::uint64_t, const std::function<void()>& digest) { digest(); });
   }
 }
 
