@@ -456,7 +456,11 @@ void VtkArray::readCounts(std::uint64_t first, std::span<std::uint64_t> counts) 
     if (!is_count) {
       fail("value " + std::to_string(first + i), "is " + numberText(value) + ", expected a whole number from 0 on");
     }
-    counts[i] = static_cast<std::uint64_t>(value);
+    if constexpr (std::is_floating_point_v<decltype(value)>) {
+      counts[i] = static_cast<std::uint64_t>(value);
+    } else {
+      counts[i] = static_cast<std::make_unsigned_t<decltype(value)>>(value);
+    }
   });
 }
 

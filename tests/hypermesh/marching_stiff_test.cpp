@@ -44,8 +44,7 @@ TEST(Crossing, StaysInsideTheMargins) {
 }
 
 TEST(Crossing, IsStrictlyBetweenLatticePoints) {
-  for (const std::uint64_t index : {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{2047}, std::uint64_t{4096},
-                                    std::uint64_t{65535}, std::uint64_t{2097151}, kMaxIndex - 1}) {
+  for (const std::int64_t index : {0L, 1L, 2047L, 4096L, 65535L, 2097151L, std::int64_t{kMaxIndex} - 1}) {
     for (const double fraction : {kCrossingMargin, 0.5, 1 - kCrossingMargin}) {
       const float at = strictlyBetween(index, fraction);
       EXPECT_GT(at, static_cast<float>(index));

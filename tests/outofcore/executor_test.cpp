@@ -18,7 +18,7 @@ class ExecutorTest : public ::testing::TestWithParam<std::size_t> {};
 TEST_P(ExecutorTest, EveryTaskRunsOnce) {
   ThreadExecutor executor(GetParam());
   EXPECT_EQ(executor.threads(), GetParam());
-  for (const std::size_t count : {0, 1, 2, 7, 1000}) {
+  for (const std::size_t count : {0U, 1U, 2U, 7U, 1000U}) {
     std::vector<std::atomic<int>> runs(count);
     executor.run(count, [&](std::size_t i) { ++runs.at(i); });
     for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(runs[i], 1) << "task " << i << " of " << count;
@@ -93,7 +93,7 @@ TEST(ExecutorLimitTest, ThreadsAreStartedForTasks) {
   EXPECT_EQ(executor.threads(), kMaxThreads);
   EXPECT_EQ(threadsOfProcess(), before);
   std::atomic<int> runs{0};
-  for (const std::size_t count : {3, 2, 5, 4}) executor.run(count, [&](std::size_t) { ++runs; });
+  for (const std::size_t count : {3U, 2U, 5U, 4U}) executor.run(count, [&](std::size_t) { ++runs; });
   EXPECT_EQ(runs, 14);
   EXPECT_EQ(threadsOfProcess(), before + 4);
 }

@@ -42,7 +42,7 @@ TEST(PageSource, EvictsLeastRecentlyUsedDownToTheBudget) {
   std::uint64_t largest = 0;
   for (const auto& entry : file.pages().entries()) largest = std::max(largest, entry.raw_bytes);
   PageSource source(file, 2 * largest);
-  for (const std::size_t page : {0, 1, 2}) {
+  for (const std::size_t page : {0U, 1U, 2U}) {
     source.beginFrame();
     ASSERT_TRUE(source.load(page).ok());
     if (page == 2) {
