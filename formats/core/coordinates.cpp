@@ -31,6 +31,17 @@ bool isUsable(const AffineMap& map) {
   return std::isfinite(volume) && volume != 0;
 }
 
+bool isSameGrid(const AffineMap& a, const AffineMap& b) {
+  double cell = 0;
+  for (const auto& axis : a.axes) cell = std::max(cell, std::hypot(axis[0], axis[1], axis[2]));
+  double distance = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    distance = std::max(distance, std::abs(a.origin[c] - b.origin[c]));
+    for (std::size_t i = 0; i < 3; ++i) distance = std::max(distance, std::abs(a.axes[c][i] - b.axes[c][i]));
+  }
+  return distance <= 1e-6 * cell;
+}
+
 double timeOfFrame(std::span<const double> times, double frame) {
   const double last = static_cast<double>(times.size() - 1);
   const double clamped = std::clamp(frame, 0.0, last);

@@ -28,6 +28,9 @@ double cellVolume(const AffineMap& map);
 // True if every number is finite and the axes are not degenerate (|det| > 0).
 bool isUsable(const AffineMap& map);
 
+// Whether two maps are equal but for the last digits of decimal texts: to a millionth of a cell.
+bool isSameGrid(const AffineMap& a, const AffineMap& b);
+
 // World time of a frame number, piecewise linear between the table's entries, exact at them.
 // times: strictly increasing, at least one; frame: clamped to [0, times.size() - 1].
 double timeOfFrame(std::span<const double> times, double frame);

@@ -50,18 +50,6 @@ class FileMovie final : public FrameSource {
   std::vector<double> times_;
 };
 
-// Equal but for the last digits of a decimal text.
-bool nearlyEqual(const AffineMap& a, const AffineMap& b) {
-  double cell = 0;
-  for (const auto& axis : a.axes) cell = std::max(cell, std::hypot(axis[0], axis[1], axis[2]));
-  double distance = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    distance = std::max(distance, std::abs(a.origin[c] - b.origin[c]));
-    for (std::size_t i = 0; i < 3; ++i) distance = std::max(distance, std::abs(a.axes[c][i] - b.axes[c][i]));
-  }
-  return distance <= 1e-6 * cell;
-}
-
 // Times the files tell, growing; nothing if none tells its time.
 std::vector<double> toldTimes(const FrameFiles& files) {
   std::vector<double> times;
@@ -119,7 +107,7 @@ void checkSameGrid(const std::string& first_name, const GridInfo& first, const s
              std::string(sampleName(first.type)),
          "all frames must be of one type (unu convert)");
   }
-  if (!nearlyEqual(first.index_to_world, other.index_to_world)) {
+  if (!isSameGrid(first.index_to_world, other.index_to_world)) {
     fail("the grid's spacing, axes or origin differ from those of " + first_name, "all frames must lie on one grid");
   }
 }

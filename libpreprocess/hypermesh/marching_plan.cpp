@@ -52,17 +52,6 @@ void checkAxes(const exchange::FrameSource& source, const Options& options) {
   }
 }
 
-// Equal but for the last digits of decimal texts: places to a millionth of a cell.
-bool isSameGrid(const AffineMap& a, const AffineMap& b) {
-  double cell = 0, distance = 0;
-  for (const auto& axis : a.axes) cell = std::max(cell, std::hypot(axis[0], axis[1], axis[2]));
-  for (std::size_t c = 0; c < 3; ++c) {
-    distance = std::max(distance, std::abs(a.origin[c] - b.origin[c]));
-    for (std::size_t i = 0; i < 3; ++i) distance = std::max(distance, std::abs(a.axes[c][i] - b.axes[c][i]));
-  }
-  return distance <= 1e-6 * cell;
-}
-
 void checkField(const exchange::FrameSource& source, const Field& field) {
   const auto text = [](const std::array<std::uint64_t, 3>& size) {
     return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]);
