@@ -25,7 +25,7 @@ namespace {
 using namespace tet4d;
 
 struct Options {
-  std::string input;
+  std::vector<std::string> inputs;
   bool offscreen = false, flat = false;
   std::array<std::uint32_t, 2> size{1280, 720};
   std::string at, times, camera, write_camera, contact_sheet;
@@ -45,18 +45,30 @@ dyntri::File openInput(const std::string& path) {
   return unwrap(dyntri::File::open(path));
 }
 
-// --at, --times, or every frame of the file.
-std::vector<SliceTime> timesOf(const Options& options, std::span<const double> table) {
+// --at, --times, or every frame of the files. Frame numbers count in the table of all files' times.
+std::vector<host::PictureTime> timesOf(const Options& options, std::span<const scene::SceneFile> files) {
   if (!options.at.empty() && !options.times.empty()) {
     throw Error(FaultCode::kUsage, "", "", "--at and --times are both given", "give one of the two");
   }
-  if (!options.at.empty()) return {unwrap(parseTime(options.at, table))};
-  if (!options.times.empty()) return unwrap(parseTimes(options.times, table));
-  return unwrap(parseTimes("0f:" + std::to_string(table.size() - 1) + "f:1f", table));
+  const std::vector<double> table = scene::sceneTimes(files);
+  std::vector<SliceTime> times;
+  if (!options.at.empty()) {
+    times = {unwrap(parseTime(options.at, table))};
+  } else {
+    const std::string all = "0f:" + std::to_string(table.size() - 1) + "f:1f";
+    times = unwrap(parseTimes(options.times.empty() ? all : options.times, table));
+  }
+  std::vector<host::PictureTime> pictures;
+  for (const SliceTime& time : times) {
+    pictures.push_back(host::pictureTime(files, time.time));
+    // A frame number that the user wrote is exact; by way of the world time it need not be.
+    if (files.size() == 1) pictures.back().frames[0] = sliceFrame(time.frame);
+  }
+  return pictures;
 }
 
-scene::Shot shotOf(const Options& options, const dyntri::File& file) {
-  const scene::WorldBox box = scene::worldBox(file.header().index_to_world, file.header().bounds);
+scene::Shot shotOf(const Options& options, std::span<const scene::SceneFile> files) {
+  const scene::WorldBox box = scene::sceneBox(files);
   const scene::Shot fitted = scene::defaultShot(box, static_cast<double>(options.size[0]) / options.size[1]);
   return options.camera.empty() ? fitted : unwrap(scene::readShot(options.camera, fitted));
 }
@@ -107,8 +119,9 @@ void checkNames(const Options& options, const cli::CommonOptions& common, std::s
     for (std::size_t i = 0; i < frames && (i == 0 || host::hasNumber(common.output)); ++i)
       outputs.push_back({"--output", unwrap(host::frameName(common.output, i))});
   }
-  unwrap(host::checkNamesDiffer(
-      {{"the input", options.input}, {"--camera", options.camera}, {"--config", common.config}}, outputs));
+  std::vector<host::NamedPath> inputs{{"--camera", options.camera}, {"--config", common.config}};
+  for (const std::string& input : options.inputs) inputs.push_back({"the input", input});
+  unwrap(host::checkNamesDiffer(inputs, outputs));
   for (const std::string& path : {options.write_camera, options.contact_sheet})
     if (!path.empty()) unwrap(host::checkMayWrite(path, common.force));
 }
@@ -127,21 +140,13 @@ void writeText(const std::string& path, const std::string& text, bool force) {
   unwrap(host::writeFile(path, std::as_bytes(std::span(text)), force));
 }
 
-void drawAll(cli::Session& session, const Options& options, const dyntri::File& file, const scene::Shot& shot,
-             const std::vector<SliceTime>& times) {
+void drawAll(cli::Session& session, const Options& options, host::Film& film) {
   const cli::CommonOptions& common = session.options();
-  std::vector<float> frame_numbers;
-  for (const SliceTime& time : times) frame_numbers.push_back(sliceFrame(time.frame));
-  host::Film film{shot,
-                  {options.size[0], options.size[1], static_cast<std::uint32_t>(options.samples)},
-                  !options.flat,
-                  options.orbit_degrees,
-                  frame_numbers};
   unwrap(render::sampleGrid(film.format));
   std::optional<host::ContactSheet> sheet;
-  if (!options.contact_sheet.empty()) sheet.emplace(options.columns, times.size(), options.tiles);
+  if (!options.contact_sheet.empty()) sheet.emplace(options.columns, film.times.size(), options.tiles);
   const bool is_gl = options.renderer == "gl";
-  const host::MemoryPlan plan = host::planMemory(file, film, sheet ? &*sheet : nullptr, is_gl);
+  const host::MemoryPlan plan = host::planMemory(film, sheet ? &*sheet : nullptr, is_gl);
   outofcore::MemoryBudget& memory = session.memory();
   const auto pictures = memory.reserve(plan.pictures, "a picture with its samples (--size, --samples)");
   const auto tiles = memory.reserve(plan.sheet, "the contact sheet");
@@ -152,14 +157,18 @@ void drawAll(cli::Session& session, const Options& options, const dyntri::File& 
   film.triangle_bytes = budget_bytes;
   auto renderer = unwrap(
       host::makeOffscreenRenderer(options.renderer, static_cast<unsigned>(session.executor().threads()), budget_bytes));
-  const std::unique_ptr<host::FrameSink> sink = sinkOf(options, common, times.size());
-  stream::PageSource source(file, budget_bytes);
-  session.progress().phase("draw", times.size());
-  unwrap(host::play(
-      file, film, source, *renderer, sink.get(), sheet ? &*sheet : nullptr, [&](const host::FrameCost& cost) {
-        session.stats().frame({times[cost.index].time, cost.ms, cost.drawn, cost.processed, cost.bytes_touched});
-        session.progress().step(cost.index + 1);
-      }));
+  const std::unique_ptr<host::FrameSink> sink = sinkOf(options, common, film.times.size());
+  std::vector<std::unique_ptr<stream::PageSource>> owners;
+  std::vector<stream::PageSource*> sources;
+  for (const scene::SceneFile& file : film.files) {
+    owners.push_back(std::make_unique<stream::PageSource>(*file.file, budget_bytes / film.files.size()));
+    sources.push_back(owners.back().get());
+  }
+  session.progress().phase("draw", film.times.size());
+  unwrap(host::play(film, sources, *renderer, sink.get(), sheet ? &*sheet : nullptr, [&](const host::FrameCost& cost) {
+    session.stats().frame({film.times[cost.index].time, cost.ms, cost.drawn, cost.processed, cost.bytes_touched});
+    session.progress().step(cost.index + 1);
+  }));
   if (sheet) {
     const std::vector<std::byte> png = unwrap(host::encodePng(sheet->compose(), options.contact_sheet));
     unwrap(host::writeFile(options.contact_sheet, png, common.force));
@@ -178,19 +187,28 @@ int play(cli::Session& session, const Options& options) {
   }
   checkNumbers(options);
   checkSuffixes(options, common.output);
-  const dyntri::File file = openInput(options.input);
-  session.dependsOn(options.input);
+  std::vector<dyntri::File> opened;
+  std::uint64_t triangles = 0;
+  for (const std::string& input : options.inputs) {
+    opened.push_back(openInput(input));
+    session.dependsOn(input);
+    triangles += opened.back().header().triangles;
+    if (opened.back().header().triangles == 0) session.warn(input + " has no triangles: nothing of it is drawn");
+  }
   if (!options.camera.empty()) session.dependsOn(options.camera);
-  if (file.header().triangles == 0)
-    session.warn(options.input + " has no triangles: pictures show the background only");
-  const std::vector<SliceTime> times = timesOf(options, file.times());
-  checkNames(options, common, times.size());
-  const scene::Shot shot = shotOf(options, file);
+  host::Film film;
+  for (const dyntri::File& file : opened) film.files.push_back({&file, std::nullopt, true});
+  film.times = timesOf(options, film.files);
+  checkNames(options, common, film.times.size());
+  film.shot = shotOf(options, film.files);
+  film.format = {options.size[0], options.size[1], static_cast<std::uint32_t>(options.samples)};
+  film.smooth = !options.flat;
+  film.orbit_degrees = options.orbit_degrees;
   session.stats().expectFrames();
-  session.stats().count("triangles", file.header().triangles);
-  session.stats().count("frames", draws ? times.size() : 0);
-  if (!options.write_camera.empty()) writeText(options.write_camera, scene::formatShot(shot), common.force);
-  if (draws) drawAll(session, options, file, shot, times);
+  session.stats().count("triangles", triangles);
+  session.stats().count("frames", draws ? film.times.size() : 0);
+  if (!options.write_camera.empty()) writeText(options.write_camera, scene::formatShot(film.shot), common.force);
+  if (draws) drawAll(session, options, film);
   return 0;
 }
 
@@ -204,7 +222,8 @@ int main(int argc, char** argv) {
                "ten times slower, as a film")
       .example("tet4d-play dam.t4d --offscreen --at 0.35 --write-camera camera.json -o dam.png",
                "one picture, and its camera to change")
-      .positional("FILE", "dynamic triangles (.t4d)", &o.input)
+      .positional("FILE", "dynamic triangles (.t4d); several share one scene, one camera and the world's time",
+                  &o.inputs)
       .heading("Pictures")
       .flag("--offscreen", "draw into files, without a display", &o.offscreen)
       .option("--size", "WxH", "of a picture, pixels", cli::Extent{&o.size})

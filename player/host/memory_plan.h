@@ -16,7 +16,7 @@ struct MemoryPlan {
   unsigned copies = 1;            // of a page: 2 for gl
 };
 
-// `sheet` may be null. `film` as play() takes it, its format proved by render::sampleGrid(). O(frames * pages).
-MemoryPlan planMemory(const dyntri::File& file, const Film& film, const ContactSheet* sheet, bool is_gl);
+// `sheet` may be null. `film` as play() takes it, its format proved by render::sampleGrid(). O(pictures * pages).
+MemoryPlan planMemory(const Film& film, const ContactSheet* sheet, bool is_gl);
 
 }  // namespace tet4d::host

@@ -70,9 +70,9 @@ class OffscreenRenderer final : public render::Renderer {
     }
   }
   const char* name() const override { return renderer_->name(); }
-  Result<render::Image> draw(const scene::DrawList& list, const stream::PageSource& source) override {
+  Result<render::Image> draw(const scene::DrawList& list, std::span<const stream::Residency* const> sources) override {
     if (!gl_->makeCurrent()) return Fault{FaultCode::kIo, "", "OSMesa", "lost its context", "use --renderer cpu"};
-    return renderer_->draw(list, source);
+    return renderer_->draw(list, sources);
   }
 
  private:

@@ -4,22 +4,35 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "player/host/contact_sheet.h"
 #include "player/host/film.h"
 #include "player/render/renderer.h"
 #include "player/scene/dyntri_chooser.h"
+#include "player/scene/scene_files.h"
 #include "player/stream/page_source.h"
 
 namespace tet4d::host {
 
+// When a picture is taken: a world time, and where that is in each file.
+struct PictureTime {
+  double time = 0;
+  std::vector<std::optional<float>> frames;  // one a file; nothing where the file's times do not hold it
+};
+
+// The same world time in every file.
+PictureTime pictureTime(std::span<const scene::SceneFile> files, double time);
+
 struct Film {
+  std::vector<scene::SceneFile> files;
   scene::Shot shot;
   scene::Format format;
   bool smooth = true;
-  double orbit_degrees = 0;              // the camera's turn over the whole film, in equal steps; 360 closes the circle
-  std::span<const float> frame_numbers;  // when, in frames of the file; one picture each
+  double orbit_degrees = 0;        // the camera's turn over the whole film, in equal steps; 360 closes the circle
+  std::vector<PictureTime> times;  // one picture each
   // Most bytes the plain C++ renderer may take for the triangles of one picture; without effect on gl.
   std::uint64_t triangle_bytes = std::numeric_limits<std::uint64_t>::max();
 };
@@ -29,7 +42,7 @@ scene::Shot shotOfFrame(const Film& film, std::size_t i);
 
 // What one picture cost.
 struct FrameCost {
-  std::size_t index;  // of frame_numbers
+  std::size_t index;  // of the film's times
   double ms;          // to bring pages in, choose, draw and read the picture back; not to encode it
   std::uint64_t drawn, processed, bytes_touched;
 };
@@ -37,7 +50,8 @@ struct FrameCost {
 // Draws all frames in order into `sink` and `sheet`, either of which may be null. `after` is called after each frame
 // and may throw to stop; nothing is left under a final name then but finished pictures. The first Fault ends it;
 // kOutOfMemory if the triangles of a picture exceed film.triangle_bytes.
-Status play(const dyntri::File& file, const Film& film, stream::PageSource& source, render::Renderer& renderer,
-            FrameSink* sink, ContactSheet* sheet, const std::function<void(const FrameCost&)>& after);
+// sources: one a file.
+Status play(const Film& film, std::span<stream::PageSource* const> sources, render::Renderer& renderer, FrameSink* sink,
+            ContactSheet* sheet, const std::function<void(const FrameCost&)>& after);
 
 }  // namespace tet4d::host

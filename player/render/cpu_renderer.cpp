@@ -19,35 +19,35 @@ glm::vec3 unitOrZero(const glm::vec3& v) {
   return length > 0 ? v / length : glm::vec3(0);
 }
 
-RasterVertex project(const scene::DrawList& list, const Vec3f& index) {
-  const glm::vec3 relative = list.index_to_relative * (toGlm(index) - list.index_centre);
+RasterVertex project(const scene::DrawList& list, const scene::DrawSurface& surface, const Vec3f& index) {
+  const glm::vec3 relative = surface.index_to_relative * (toGlm(index) - surface.index_centre) + surface.offset;
   return {list.relative_to_clip * glm::vec4(relative, 1), relative, glm::vec3(0)};
 }
 
-void addSmooth(const scene::DrawList& list, const PageSlice& slice, Raster& raster) {
+void addSmooth(const scene::DrawList& list, const scene::DrawSurface& surface, const PageSlice& slice, Raster& raster) {
   std::vector<RasterVertex> vertices(slice.positions.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    vertices[i] = project(list, slice.positions[i]);
-    vertices[i].normal = unitOrZero(list.normal_to_relative * toGlm(slice.areas[i]));
+    vertices[i] = project(list, surface, slice.positions[i]);
+    vertices[i].normal = unitOrZero(surface.normal_to_relative * toGlm(slice.areas[i]));
   }
   for (const auto& [a, b, c] : slice.triangles) raster.add(vertices[a], vertices[b], vertices[c]);
 }
 
-void addFlat(const scene::DrawList& list, const PageSlice& slice, Raster& raster) {
+void addFlat(const scene::DrawList& list, const scene::DrawSurface& surface, const PageSlice& slice, Raster& raster) {
   for (const auto& triangle : slice.triangles) {
     std::array<RasterVertex, 3> corners{};
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = project(list, slice.positions[triangle[k]]);
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = project(list, surface, slice.positions[triangle[k]]);
     const glm::vec3 origin = toGlm(slice.positions[triangle[0]]);
     const glm::vec3 area =
         glm::cross(toGlm(slice.positions[triangle[1]]) - origin, toGlm(slice.positions[triangle[2]]) - origin);
-    for (RasterVertex& corner : corners) corner.normal = unitOrZero(list.normal_to_relative * area);
+    for (RasterVertex& corner : corners) corner.normal = unitOrZero(surface.normal_to_relative * area);
     raster.add(corners[0], corners[1], corners[2]);
   }
 }
 
 // The walls behind everything, in a raster of their own; a wall's colour stands in place of its normal.
 Raster panelRaster(const scene::DrawList& list, std::uint32_t width, std::uint32_t height) {
-  Raster raster(width, height, false);
+  Raster raster(width, height);
   for (const scene::DrawPanel& panel : list.panels) {
     std::array<RasterVertex, 4> corners{};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -80,7 +80,8 @@ void shadeRows(const scene::DrawList& list, const Raster& raster, const Raster& 
         writePixel(row + std::size_t{4} * x, panel == kNothing ? behind : panels.sampleAt(panel, x, y).normal);
       } else {
         const Raster::Sample sample = raster.sampleAt(id, x, y);
-        writePixel(row + std::size_t{4} * x, shade(list, sample.position, sample.normal, sample.front));
+        writePixel(row + std::size_t{4} * x,
+                   shade(list, list.surfaces[sample.surface], sample.position, sample.normal, sample.front));
       }
     }
   }
@@ -91,16 +92,15 @@ class CpuRenderer final : public Renderer {
   explicit CpuRenderer(unsigned threads) : threads_(std::max(threads, 1u)) {}
   const char* name() const override { return "cpu"; }
 
-  Result<Image> draw(const scene::DrawList& list, const stream::PageSource& source) override {
+  Result<Image> draw(const scene::DrawList& list, std::span<const stream::Residency* const> sources) override {
     const auto grid = sampleGrid(list.format);
     if (!grid.ok()) return grid.fault();
     Image image(list.format.width * grid.value(), list.format.height * grid.value());
-    Raster raster(image.width, image.height, list.mirrored);
-    for (const scene::DrawItem& item : list.items) {
-      const dyntri::PageView* page = source.resident(item.page);
-      if (page == nullptr) return absentPage(item.page);
-      slicer_.slice(*page, item.first, item.count, list.t, list.last_t, slice_);
-      list.smooth ? addSmooth(list, slice_, raster) : addFlat(list, slice_, raster);
+    Raster raster(image.width, image.height);
+    for (std::size_t i = 0; i < list.surfaces.size(); ++i) {
+      raster.beginSurface(static_cast<std::uint32_t>(i), list.surfaces[i].mirrored);
+      if (Status status = addSurface(list, list.surfaces[i], *sources[list.surfaces[i].source], raster); !status.ok())
+        return status.fault();
     }
     Raster panels = panelRaster(list, image.width, image.height);
     // Rows of different bands share nothing, so the picture is the same for any number of threads.
@@ -117,6 +117,17 @@ class CpuRenderer final : public Renderer {
   }
 
  private:
+  Status addSurface(const scene::DrawList& list, const scene::DrawSurface& surface, const stream::Residency& source,
+                    Raster& raster) {
+    for (const auto items : itemsByPage(surface.items)) {
+      const dyntri::PageView* page = source.resident(items.front().page);
+      if (page == nullptr) return absentPage(items.front().page);
+      slicer_.slice(*page, items, surface.t, surface.last_t, slice_);
+      list.smooth ? addSmooth(list, surface, slice_, raster) : addFlat(list, surface, slice_, raster);
+    }
+    return {};
+  }
+
   unsigned threads_;
   PageSlicer slicer_;
   PageSlice slice_;

@@ -22,8 +22,8 @@ void GlPage::bind() const {
   }
 }
 
-Result<const GlPage*> GlPages::get(std::size_t number, const dyntri::PageView& page) {
-  if (const auto found = pages_.find(number); found != pages_.end()) {
+Result<const GlPage*> GlPages::get(std::size_t source, std::size_t number, const dyntri::PageView& page) {
+  if (const auto found = pages_.find({source, number}); found != pages_.end()) {
     found->second.last_frame = frame_;
     return &found->second;
   }
@@ -57,7 +57,7 @@ Result<const GlPage*> GlPages::get(std::size_t number, const dyntri::PageView& p
   copy.edge_count = static_cast<GLint>(page.edges.size());
   copy.key_count = static_cast<GLint>(page.edges.size() + page.vertices.size());
   bytes_ += copy.bytes;
-  return &pages_.emplace(number, std::move(copy)).first->second;
+  return &pages_.emplace(std::pair(source, number), std::move(copy)).first->second;
 }
 
 void GlPages::evict() {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <utility>
 
 #include "formats/dynamic_triangles.h"
 #include "player/render/gl_objects.h"
@@ -32,14 +33,15 @@ class GlPages {
     ++frame_;
     evict();
   }
-  // The copy of page `number`, made from `page` if there is none. Fault if a table exceeds the driver's limit.
-  Result<const GlPage*> get(std::size_t number, const dyntri::PageView& page);
+  // The copy of page `number` of a source, made from `page` if there is none. Fault if a table exceeds the driver's
+  // limit.
+  Result<const GlPage*> get(std::size_t source, std::size_t number, const dyntri::PageView& page);
   // Drops the copies used longest ago, none of this frame, until the budget holds.
   void evict();
 
  private:
   std::uint64_t budget_bytes_, bytes_ = 0, frame_ = 0;
-  std::map<std::size_t, GlPage> pages_;
+  std::map<std::pair<std::size_t, std::size_t>, GlPage> pages_;  // by source and number
 };
 
 }  // namespace tet4d::render

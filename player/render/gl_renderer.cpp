@@ -70,21 +70,17 @@ Result<Programs> makePrograms() {
   return programs;
 }
 
-void setLookup(const GlProgram& program, const scene::DrawList& list) {
+void setLookup(const GlProgram& program, const scene::DrawSurface& surface) {
   program.use();
   program.set("vertices", kVerticesUnit);
   program.set("edges", kEdgesUnit);
   program.set("triangles", kTrianglesUnit);
   program.set("lifespans", kLifespansUnit);
-  program.set("t", list.t);
-  program.set("last_t", list.last_t);
+  program.set("t", surface.t);
+  program.set("last_t", surface.last_t);
 }
 
-void setSurface(const GlProgram& program, const scene::DrawList& list) {
-  program.set("normal_sums", kNormalSumsUnit);
-  program.set("index_centre", list.index_centre);
-  program.set("index_to_relative", list.index_to_relative);
-  program.set("normal_to_relative", list.normal_to_relative);
+void setView(const GlProgram& program, const scene::DrawList& list) {
   program.set("relative_to_clip", list.relative_to_clip);
   program.set("perspective", list.perspective ? 1 : 0);
   program.set("eye_or_backward", list.eye_or_backward);
@@ -95,10 +91,18 @@ void setSurface(const GlProgram& program, const scene::DrawList& list) {
     program.set(("light_color[" + index).c_str(), list.lights[i].color);
   }
   program.set("ambient", list.ambient);
-  program.set("front_color", list.front_color);
-  program.set("back_color", list.back_color);
-  program.set("specular", list.specular);
-  program.set("shininess", list.shininess);
+}
+
+void setSurface(const GlProgram& program, const scene::DrawSurface& surface) {
+  program.set("normal_sums", kNormalSumsUnit);
+  program.set("index_centre", surface.index_centre);
+  program.set("index_to_relative", surface.index_to_relative);
+  program.set("normal_to_relative", surface.normal_to_relative);
+  program.set("offset", surface.offset);
+  program.set("front_color", surface.front_color);
+  program.set("back_color", surface.back_color);
+  program.set("specular", surface.specular);
+  program.set("shininess", surface.shininess);
 }
 
 class GlRenderer final : public Renderer {
@@ -107,7 +111,7 @@ class GlRenderer final : public Renderer {
       : programs_(std::move(programs)), pages_(gpu_budget_bytes), no_attributes_(GlVertexArray::create()) {}
   const char* name() const override { return "gl"; }
 
-  Result<Image> draw(const scene::DrawList& list, const stream::PageSource& source) override {
+  Result<Image> draw(const scene::DrawList& list, std::span<const stream::Residency* const> sources) override {
     const auto grid = sampleGrid(list.format);
     if (!grid.ok()) return grid.fault();
     const auto width = static_cast<GLsizei>(list.format.width * grid.value());
@@ -116,8 +120,11 @@ class GlRenderer final : public Renderer {
     pages_.beginFrame();
     glBindVertexArray(no_attributes_.get());
     drawBackground(list);
-    for (const scene::DrawItem& item : list.items) {
-      if (Status status = drawItem(list, item, source); !status.ok()) return status.fault();
+    for (const scene::DrawSurface& surface : list.surfaces) {
+      for (const auto items : itemsByPage(surface.items)) {
+        if (Status status = drawPage(list, surface, items, *sources[surface.source]); !status.ok())
+          return status.fault();
+      }
     }
     Image image = readBack();
     if (Status status = checkGl("drawing"); !status.ok()) return status.fault();
@@ -168,18 +175,21 @@ class GlRenderer final : public Renderer {
     glViewport(0, 0, target_.width, target_.height);
   }
 
-  Status drawItem(const scene::DrawList& list, const scene::DrawItem& item, const stream::PageSource& source) {
-    const dyntri::PageView* view = source.resident(item.page);
-    if (view == nullptr) return absentPage(item.page);
-    auto page = pages_.get(item.page, *view);
+  Status drawPage(const scene::DrawList& list, const scene::DrawSurface& surface,
+                  std::span<const scene::DrawItem> items, const stream::Residency& source) {
+    const std::size_t number = items.front().page;
+    const dyntri::PageView* view = source.resident(number);
+    if (view == nullptr) return absentPage(number);
+    auto page = pages_.get(surface.source, number, *view);
     if (!page.ok()) return page.fault();
     page.value()->bind();
     if (list.smooth) {
-      if (Status status = sumNormals(list, item, *page.value()); !status.ok()) return status;
+      if (Status status = sumNormals(surface, items, *page.value()); !status.ok()) return status;
     }
     const GlProgram& program = list.smooth ? programs_.smooth : programs_.flat;
-    setLookup(program, list);
-    setSurface(program, list);
+    setLookup(program, surface);
+    setView(program, list);
+    setSurface(program, surface);
     program.set("edge_count", page.value()->edge_count);
     program.set("sums_size", std::max(sums_.width, 1), std::max(sums_.height, 1));
     glActiveTexture(GL_TEXTURE0 + kNormalSumsUnit);
@@ -188,13 +198,13 @@ class GlRenderer final : public Renderer {
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
-    glFrontFace(list.mirrored ? GL_CW : GL_CCW);
-    drawCorners(GL_TRIANGLES, item);
+    glFrontFace(surface.mirrored ? GL_CW : GL_CCW);
+    drawCorners(GL_TRIANGLES, items);
     return {};
   }
 
   // Pass 1: every corner of a living triangle adds the triangle's area vector to its slice vertex's texel.
-  Status sumNormals(const scene::DrawList& list, const scene::DrawItem& item, const GlPage& page) {
+  Status sumNormals(const scene::DrawSurface& surface, std::span<const scene::DrawItem> items, const GlPage& page) {
     const GLsizei rows = (page.key_count + kSumsWidth - 1) / kSumsWidth;
     if (Status status = makeSums(rows); !status.ok()) return status;
     glBindFramebuffer(GL_FRAMEBUFFER, sums_.framebuffer.get());
@@ -207,10 +217,10 @@ class GlRenderer final : public Renderer {
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
-    setLookup(programs_.accumulate, list);
+    setLookup(programs_.accumulate, surface);
     programs_.accumulate.set("edge_count", page.edge_count);
     programs_.accumulate.set("sums_size", sums_.width, sums_.height);
-    drawCorners(GL_POINTS, item);
+    drawCorners(GL_POINTS, items);
     return {};
   }
 
@@ -234,8 +244,9 @@ class GlRenderer final : public Renderer {
     return {};
   }
 
-  static void drawCorners(GLenum mode, const scene::DrawItem& item) {
-    glDrawArrays(mode, static_cast<GLint>(3 * item.first), static_cast<GLsizei>(3 * item.count));
+  static void drawCorners(GLenum mode, std::span<const scene::DrawItem> items) {
+    for (const scene::DrawItem& item : items)
+      glDrawArrays(mode, static_cast<GLint>(3 * item.first), static_cast<GLsizei>(3 * item.count));
   }
 
   Image readBack() const {

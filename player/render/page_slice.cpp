@@ -33,21 +33,26 @@ std::uint32_t PageSlicer::vertexOf(const dyntri::PageView& page, std::uint32_t e
   return vertex;
 }
 
-void PageSlicer::slice(const dyntri::PageView& page, std::uint64_t first, std::uint64_t count, float t, float last_t,
+void PageSlicer::addTriangle(const dyntri::PageView& page, std::uint64_t triangle, float t, PageSlice& out) {
+  std::array<std::uint32_t, 3> corners{};
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = vertexOf(page, page.triangles[triangle][k], t, out);
+  if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return;
+  out.triangles.push_back(corners);
+  const Vec3f area = crossProduct(out.positions[corners[0]], out.positions[corners[1]], out.positions[corners[2]]);
+  for (const std::uint32_t corner : corners) {
+    Vec3f& sum = out.areas[corner];
+    sum = {sum.x + area.x, sum.y + area.y, sum.z + area.z};
+  }
+}
+
+void PageSlicer::slice(const dyntri::PageView& page, std::span<const scene::DrawItem> items, float t, float last_t,
                        PageSlice& out) {
   vertex_of_key_.assign(page.edges.size() + page.vertices.size(), kNone);
   out.positions.clear(), out.areas.clear(), out.triangles.clear();
-  for (std::uint64_t i = first; i < first + count; ++i) {
-    const dyntri::Lifespan& life = page.lifespans[i];
-    if (!isAlive(life.begin, life.end, t, last_t)) continue;
-    std::array<std::uint32_t, 3> corners{};
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = vertexOf(page, page.triangles[i][k], t, out);
-    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
-    out.triangles.push_back(corners);
-    const Vec3f area = crossProduct(out.positions[corners[0]], out.positions[corners[1]], out.positions[corners[2]]);
-    for (const std::uint32_t corner : corners) {
-      Vec3f& sum = out.areas[corner];
-      sum = {sum.x + area.x, sum.y + area.y, sum.z + area.z};
+  for (const scene::DrawItem& item : items) {
+    for (std::uint64_t i = item.first; i < item.first + item.count; ++i) {
+      const dyntri::Lifespan& life = page.lifespans[i];
+      if (isAlive(life.begin, life.end, t, last_t)) addTriangle(page, i, t, out);
     }
   }
 }

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "formats/dynamic_triangles.h"
+#include "player/scene/draw_list.h"
 
 namespace tet4d::render {
 
@@ -19,11 +21,13 @@ struct PageSlice {
 // Slices pages; keeps its table of keys between calls, so that a film does not allocate for every frame.
 class PageSlicer {
  public:
-  // Triangles first .. first + count - 1 of `page` that are alive at t. O(count), memory O(edges + vertices).
-  void slice(const dyntri::PageView& page, std::uint64_t first, std::uint64_t count, float t, float last_t,
+  // The triangles of the runs `items`, all of `page`, that are alive at t. O(triangles of the runs), memory
+  // O(edges + vertices).
+  void slice(const dyntri::PageView& page, std::span<const scene::DrawItem> items, float t, float last_t,
              PageSlice& out);
 
  private:
+  void addTriangle(const dyntri::PageView& page, std::uint64_t triangle, float t, PageSlice& out);
   std::uint32_t vertexOf(const dyntri::PageView& page, std::uint32_t edge, float t, PageSlice& out);
 
   std::vector<std::uint32_t> vertex_of_key_;  // keys: the edges, then the vertices

@@ -59,12 +59,16 @@ std::int32_t ceilPixel(std::int32_t fixed) { return (fixed + kSubPixels - 1) >> 
 
 }  // namespace
 
-Raster::Raster(std::uint32_t width, std::uint32_t height, bool mirrored)
+Raster::Raster(std::uint32_t width, std::uint32_t height)
     : width_(width),
       height_(height),
-      mirrored_(mirrored),
       depths_(std::size_t{width} * height, 1.0f),
       ids_(std::size_t{width} * height, kNothing) {}
+
+void Raster::beginSurface(std::uint32_t number, bool mirrored) {
+  surface_ = number;
+  mirrored_ = mirrored;
+}
 
 void Raster::add(const RasterVertex& a, const RasterVertex& b, const RasterVertex& c) {
   const std::array<const RasterVertex*, 3> corners{&a, &b, &c};
@@ -92,6 +96,7 @@ void Raster::add(const RasterVertex& a, const RasterVertex& b, const RasterVerte
 void Raster::addClipped(const std::array<std::uint32_t, 3>& vertex) {
   Triangle triangle{};
   triangle.vertex = vertex;
+  triangle.surface = surface_;
   for (std::size_t k = 0; k < 3; ++k) {
     const glm::vec4& clip = vertices_[vertex[k]].clip;
     if (!(clip.w > 0)) return;  // only the volume's apex is left of it
@@ -173,7 +178,7 @@ Raster::Sample Raster::sampleAt(std::uint32_t id, std::uint32_t x, std::uint32_t
     weight[k] = static_cast<float>(value) / vertices_[triangle.vertex[k]].clip.w;
     sum += weight[k];
   }
-  Sample sample{glm::vec3(0), glm::vec3(0), triangle.front};
+  Sample sample{glm::vec3(0), glm::vec3(0), triangle.front, triangle.surface};
   for (std::size_t k = 0; k < 3; ++k) {
     sample.position += weight[k] / sum * vertices_[triangle.vertex[k]].position;
     sample.normal += weight[k] / sum * vertices_[triangle.vertex[k]].normal;

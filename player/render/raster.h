@@ -23,8 +23,11 @@ inline constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::ma
 
 class Raster {
  public:
-  // y runs up, as in OpenGL. mirrored: clockwise triangles are the front ones.
-  Raster(std::uint32_t width, std::uint32_t height, bool mirrored);
+  // y runs up, as in OpenGL.
+  Raster(std::uint32_t width, std::uint32_t height);
+
+  // What add() brings from now on belongs to surface `number`; mirrored: its clockwise triangles are the front ones.
+  void beginSurface(std::uint32_t number, bool mirrored);
 
   // Clips the triangle and adds what is left of it. Degenerate ones vanish.
   void add(const RasterVertex& a, const RasterVertex& b, const RasterVertex& c);
@@ -36,6 +39,7 @@ class Raster {
   struct Sample {
     glm::vec3 position, normal;
     bool front;
+    std::uint32_t surface;
   };
   // The id of what is seen at (x, y): kNothing, or an argument for sampleAt(). After resolveRows() of its band.
   std::uint32_t visible(std::uint32_t x, std::uint32_t y) const { return ids_[std::size_t{width_} * y + x]; }
@@ -47,6 +51,7 @@ class Raster {
     std::array<float, 3> z;            // depth, 0..1
     std::array<std::uint32_t, 3> vertex;
     bool front;
+    std::uint32_t surface;
   };
   struct Edge {
     std::int64_t dx, dy, at_origin;  // value(x, y) = at_origin + dx * x + dy * y for pixel x, y; >= 0 inside
@@ -56,7 +61,8 @@ class Raster {
   void resolveTriangle(std::uint32_t id, unsigned band, unsigned bands);
 
   std::uint32_t width_, height_;
-  bool mirrored_;
+  bool mirrored_ = false;
+  std::uint32_t surface_ = 0;
   std::vector<RasterVertex> vertices_;
   std::vector<Triangle> triangles_;
   std::vector<float> depths_;

@@ -25,6 +25,15 @@ Result<std::uint32_t> sampleGrid(const scene::Format& format) {
   return side;
 }
 
+std::vector<std::span<const scene::DrawItem>> itemsByPage(std::span<const scene::DrawItem> items) {
+  std::vector<std::span<const scene::DrawItem>> pages;
+  for (std::size_t first = 0, end = 0; first < items.size(); first = end) {
+    while (end < items.size() && items[end].page == items[first].page) ++end;
+    pages.push_back(items.subspan(first, end - first));
+  }
+  return pages;
+}
+
 Fault absentPage(std::size_t page) {
   return {FaultCode::kUsage, "", "page " + std::to_string(page), "is to be drawn but is not resident",
           "load the pages that the chooser names before drawing"};

@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "formats/core/result.h"
 #include "player/render/image.h"
 #include "player/scene/draw_list.h"
-#include "player/stream/page_source.h"
+#include "player/stream/residency.h"
 
 namespace tet4d::render {
 
@@ -19,13 +21,17 @@ class Renderer {
   virtual ~Renderer() = default;
   // "gl" or "cpu".
   virtual const char* name() const = 0;
-  // Draws the list. Pages named by its items must be resident in `source`; a renderer serves one source only, because
-  // it may keep copies of pages by their number. A Fault says what the machine or the driver refused.
-  virtual Result<Image> draw(const scene::DrawList& list, const stream::PageSource& source) = 0;
+  // Draws the list. Pages named by a surface's items must be resident in sources[surface.source]. A renderer may keep
+  // copies of pages by source and number: the same rank must mean the same file in every call. A Fault says what the
+  // machine or the driver refused.
+  virtual Result<Image> draw(const scene::DrawList& list, std::span<const stream::Residency* const> sources) = 0;
 };
 
 // Side of the sample grid of a pixel (1, 2, 3 or 4), or a Fault (kUsage) if the format is not one the renderers serve.
 Result<std::uint32_t> sampleGrid(const scene::Format& format);
+
+// A surface's items page by page, in order. O(items).
+std::vector<std::span<const scene::DrawItem>> itemsByPage(std::span<const scene::DrawItem> items);
 
 // The Fault of a list that names a page which is not resident.
 Fault absentPage(std::size_t page);

@@ -94,15 +94,10 @@ std::vector<DrawPanel> panelsOf(const WorldBox& box, const glm::dvec3& color, co
 
 }  // namespace
 
-DrawList makeDrawList(const WorldBox& box, const Shot& shot, const Format& format, bool smooth) {
+DrawList makeCamera(const WorldBox& box, const Shot& shot, const Format& format, bool smooth) {
   DrawList list;
   list.format = format;
   list.smooth = smooth;
-
-  list.index_centre = box.index_centre;
-  list.index_to_relative = glm::mat3(box.axes);
-  list.mirrored = glm::determinant(box.axes) < 0;
-  list.normal_to_relative = normalMap(box.axes);
 
   const glm::dvec3 eye = shot.view.eye - box.centre;
   const glm::dvec3 target = shot.view.target - box.centre;
@@ -118,13 +113,29 @@ DrawList makeDrawList(const WorldBox& box, const Shot& shot, const Format& forma
     list.lights.push_back({glm::vec3(-glm::normalize(light.direction)), glm::vec3(light.color)});
   }
   list.ambient = glm::vec3(shot.ambient);
-  list.front_color = linearOf(shot.material.color);
-  list.back_color = linearOf(shot.material.back_color);
-  list.specular = static_cast<float>(shot.material.specular);
-  list.shininess = static_cast<float>(shot.material.shininess);
   list.background_top = glm::vec3(shot.background.top);
   list.background_bottom = glm::vec3(shot.background.bottom);
   if (shot.background.room) list.panels = panelsOf(box, *shot.background.room, list);
+  return list;
+}
+
+DrawSurface makeSurface(const WorldBox& own, const glm::dvec3& scene_centre, const Material& material) {
+  DrawSurface surface;
+  surface.index_centre = own.index_centre;
+  surface.index_to_relative = glm::mat3(own.axes);
+  surface.normal_to_relative = normalMap(own.axes);
+  surface.offset = glm::vec3(own.centre - scene_centre);
+  surface.mirrored = glm::determinant(own.axes) < 0;
+  surface.front_color = linearOf(material.color);
+  surface.back_color = linearOf(material.back_color);
+  surface.specular = static_cast<float>(material.specular);
+  surface.shininess = static_cast<float>(material.shininess);
+  return surface;
+}
+
+DrawList makeDrawList(const WorldBox& box, const Shot& shot, const Format& format, bool smooth) {
+  DrawList list = makeCamera(box, shot, format, smooth);
+  list.surfaces.push_back(makeSurface(box, box.centre, shot.material));
   return list;
 }
 

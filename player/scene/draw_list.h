@@ -34,34 +34,26 @@ struct DrawPanel {
   glm::vec3 color;                   // sRGB
 };
 
-// A run of one page's triangles; all triangles alive at t that the page has lie within it.
+// A run of one page's triangles. Items of one page stand together; all triangles alive at t that the page has lie
+// within them.
 struct DrawItem {
   std::size_t page;
   std::uint64_t first, count;
 };
 
-struct DrawList {
-  Format format;
-  bool smooth = true;  // normals by slice vertex; false: by triangle
-
-  // relative = index_to_relative * (index - index_centre); an area vector a (cross product of two index-space edges)
-  // has the direction normal_to_relative * a, which points out of the inside set even if the map is a mirror.
+// One file's part of a picture.
+struct DrawSurface {
+  std::size_t source = 0;  // of those given to the renderer
+  // relative = index_to_relative * (index - index_centre) + offset; an area vector a (cross product of two index-space
+  // edges) has the direction normal_to_relative * a, which points out of the inside set even if the map is a mirror.
   glm::vec3 index_centre{0};
   glm::mat3 index_to_relative{1};
   glm::mat3 normal_to_relative{1};
-  bool mirrored = false;          // the map is left-handed: counter-clockwise triangles turn clockwise
-  glm::mat4 relative_to_clip{1};  // z in -w..w, y up
-  // Perspective: the eye. Orthographic: the unit vector towards the viewer.
-  bool perspective = true;
-  glm::vec3 eye_or_backward{0, 0, 1};
+  glm::vec3 offset{0};    // of the file's centre from the scene's; 0 for a scene of one file
+  bool mirrored = false;  // the map is left-handed: counter-clockwise triangles turn clockwise
 
-  std::vector<DrawLight> lights;
-  glm::vec3 ambient{0};
   glm::vec3 front_color{0}, back_color{0};
   float specular = 0, shininess = 1;
-  glm::vec3 background_top{0}, background_bottom{0};  // sRGB: the gradient runs in the encoded values
-
-  std::vector<DrawPanel> panels;  // behind everything, over the gradient; they do not overlap
 
   float t = 0, last_t = 0;  // frames
   std::vector<DrawItem> items;
@@ -70,8 +62,42 @@ struct DrawList {
   std::uint64_t absent = 0;     // pages that should be drawn and are not resident
 };
 
-// Camera, lights and material as a renderer needs them; time and items are the chooser's. `shot` as proved by
+struct DrawList {
+  Format format;
+  bool smooth = true;             // normals by slice vertex; false: by triangle
+  glm::mat4 relative_to_clip{1};  // z in -w..w, y up
+  // Perspective: the eye. Orthographic: the unit vector towards the viewer.
+  bool perspective = true;
+  glm::vec3 eye_or_backward{0, 0, 1};
+
+  std::vector<DrawLight> lights;
+  glm::vec3 ambient{0};
+  glm::vec3 background_top{0}, background_bottom{0};  // sRGB: the gradient runs in the encoded values
+  std::vector<DrawPanel> panels;                      // behind everything, over the gradient; they do not overlap
+  std::vector<DrawSurface> surfaces;
+
+  // Sums over the surfaces.
+  std::uint64_t processed() const { return sum(&DrawSurface::processed); }
+  std::uint64_t drawn() const { return sum(&DrawSurface::drawn); }
+  std::uint64_t absent() const { return sum(&DrawSurface::absent); }
+
+ private:
+  std::uint64_t sum(std::uint64_t DrawSurface::*count) const {
+    std::uint64_t total = 0;
+    for (const DrawSurface& surface : surfaces) total += surface.*count;
+    return total;
+  }
+};
+
+// Camera and lights as a renderer needs them, relative to the box's centre; no surfaces. `shot` as proved by
 // parseShot() or made by defaultShot().
+DrawList makeCamera(const WorldBox& box, const Shot& shot, const Format& format, bool smooth);
+
+// A surface of `material` in the box of its file, relative to `scene_centre` (world units). Time and items are the
+// chooser's.
+DrawSurface makeSurface(const WorldBox& own, const glm::dvec3& scene_centre, const Material& material);
+
+// A scene of one file: camera and its surface.
 DrawList makeDrawList(const WorldBox& box, const Shot& shot, const Format& format, bool smooth);
 
 }  // namespace tet4d::scene

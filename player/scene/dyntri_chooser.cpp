@@ -9,11 +9,12 @@ namespace tet4d::scene {
 namespace {
 
 // True if one plane of the view has the whole box behind it. Conservative: a box near a corner of the view may stay.
-bool isOutside(const Bounds4f& box, const DrawList& camera) {
+bool isOutside(const Bounds4f& box, const DrawList& camera, const DrawSurface& surface) {
   std::array<bool, 6> all_behind;
   all_behind.fill(true);
   for (const glm::dvec3& corner : cornersOf(box)) {
-    const glm::dvec3 relative = glm::dmat3(camera.index_to_relative) * (corner - glm::dvec3(camera.index_centre));
+    const glm::dvec3 relative = glm::dmat3(surface.index_to_relative) * (corner - glm::dvec3(surface.index_centre)) +
+                                glm::dvec3(surface.offset);
     const glm::dvec4 clip = glm::dmat4(camera.relative_to_clip) * glm::dvec4(relative, 1);
     // A hair of slack, so that float rounding in a renderer never shows what was culled here.
     const double w = clip.w + 1e-5 * (std::abs(clip.w) + 1e-30);
@@ -28,26 +29,26 @@ bool isOutside(const Bounds4f& box, const DrawList& camera) {
 }  // namespace
 
 std::vector<std::size_t> choosePages(std::span<const paged::PageEntry> entries, float t, float last_t,
-                                     const DrawList& camera) {
+                                     const DrawList& camera, const DrawSurface& surface) {
   std::vector<std::size_t> chosen;
   for (std::size_t page = 0; page < entries.size(); ++page) {
     const paged::PageEntry& entry = entries[page];
     if (entry.counts[2] == 0 || !isAlive(entry.bounds.min.t, entry.bounds.max.t, t, last_t)) continue;
-    if (!isOutside(entry.bounds, camera)) chosen.push_back(page);
+    if (!isOutside(entry.bounds, camera, surface)) chosen.push_back(page);
   }
   return chosen;
 }
 
-void chooseTriangles(const stream::PageSource& source, std::span<const std::size_t> pages, float t, float last_t,
-                     DrawList& list) {
-  list.t = t;
-  list.last_t = last_t;
-  list.items.clear();
-  list.processed = list.drawn = list.absent = 0;
+void chooseTriangles(const stream::Residency& source, std::span<const std::size_t> pages, float t, float last_t,
+                     DrawSurface& surface) {
+  surface.t = t;
+  surface.last_t = last_t;
+  surface.items.clear();
+  surface.processed = surface.drawn = surface.absent = 0;
   for (const std::size_t page : pages) {
     const dyntri::PageView* view = source.resident(page);
     if (view == nullptr) {
-      ++list.absent;
+      ++surface.absent;
       continue;
     }
     const auto lives = view->lifespans;
@@ -61,9 +62,9 @@ void chooseTriangles(const stream::PageSource& source, std::span<const std::size
       last = index;
     }
     if (alive == 0) continue;
-    list.items.push_back({page, first, last - first + 1});
-    list.processed += last - first + 1;
-    list.drawn += alive;
+    surface.items.push_back({page, first, last - first + 1});
+    surface.processed += last - first + 1;
+    surface.drawn += alive;
   }
 }
 

@@ -10,17 +10,18 @@
 #include <vector>
 
 #include "player/scene/draw_list.h"
-#include "player/stream/page_source.h"
+#include "player/stream/residency.h"
 
 namespace tet4d::scene {
 
 // The pages to bring in and draw at time t (frames): their interval holds t — half-open, closed at last_t — they have
-// triangles, and their box is not outside the view. In page order. `camera` as made by makeDrawList(). O(pages).
+// triangles, and their box is not outside the view. In page order. `surface`: the file's, of the list `camera`.
+// O(pages).
 std::vector<std::size_t> choosePages(std::span<const paged::PageEntry> entries, float t, float last_t,
-                                     const DrawList& camera);
+                                     const DrawList& camera, const DrawSurface& surface);
 
 // Fills in t, last_t, items and counts from those of `pages` that are resident. O(triangles that have begun).
-void chooseTriangles(const stream::PageSource& source, std::span<const std::size_t> pages, float t, float last_t,
-                     DrawList& list);
+void chooseTriangles(const stream::Residency& source, std::span<const std::size_t> pages, float t, float last_t,
+                     DrawSurface& surface);
 
 }  // namespace tet4d::scene

@@ -13,10 +13,11 @@
 #include <vector>
 
 #include "formats/dynamic_triangles.h"
+#include "player/stream/residency.h"
 
 namespace tet4d::stream {
 
-class PageSource {
+class PageSource final : public Residency {
  public:
   // `file` must outlive the source. budget_bytes: of decoded pages; a frame whose own pages exceed it is still whole.
   PageSource(const dyntri::File& file, std::uint64_t budget_bytes);
@@ -33,7 +34,7 @@ class PageSource {
 
   // The page, or nullptr if it is not resident. Never reads. Valid until the page is evicted, which does not happen
   // within the frame that loaded it.
-  const dyntri::PageView* resident(std::size_t page) const;
+  const dyntri::PageView* resident(std::size_t page) const override;
 
   // Drops least recently used pages, none of the current frame, until the budget holds. O(pages) per page dropped.
   void evict();

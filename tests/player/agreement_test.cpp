@@ -4,10 +4,12 @@
 // on silhouettes, where the two disagree about a sample by rounding).
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdio>
 #include <glm/vec3.hpp>
 
 #include "player/host/offscreen_gl.h"
+#include "player/scene/scene_files.h"
 #include "tests/player/picture.h"
 #include "tests/player/swept_mesh.h"
 
@@ -78,6 +80,31 @@ TEST_F(Agreement, PagesOfSeveralFrames) {
   const test::Page page = test::sweep(test::icosphere(2), test::kTestSphere.motion(), 0, 3);
   Stage stage(test::writeFile("agree_page.t4d", {page}, {{}, {0, 1, 2, 3}, paged::Codec::kRaw}));
   for (const float t : {0.5f, 1.0f, 2.0f, 2.5f, 3.0f}) expectSame(stage, t, "one page");
+}
+
+TEST_F(Agreement, TwoFilesOfOneSceneHideOneAnother) {
+  const auto open = [](const std::string& path) { return std::move(dyntri::File::open(path)).value(); };
+  // The second one is mirrored, half a radius off, and pierces the first.
+  const dyntri::File first = open(test::writeTestSphere("agree_first.t4d", 2));
+  const dyntri::File second =
+      open(test::writeTestSphere("agree_second.t4d", 2, {{19, 2, 1}, {{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}));
+  const std::vector<scene::SceneFile> files{{&first, std::nullopt, true}, {&second, std::nullopt, true}};
+  scene::DrawList list =
+      scene::makeDrawList(files, scene::defaultShot(scene::sceneBox(files), 1.5), {300, 200, 1}, true);
+  stream::PageSource a(first, 1u << 30), b(second, 1u << 30);
+  const std::size_t pages[] = {0};
+  for (stream::PageSource* source : {&a, &b}) ASSERT_TRUE(source->load(0).ok());
+  scene::chooseTriangles(a, pages, 0.5f, 1, list.surfaces[0]);
+  scene::chooseTriangles(b, pages, 0.5f, 1, list.surfaces[1]);
+  const std::array<const stream::Residency*, 2> sources{&a, &b};
+  auto by_gl = gl_->draw(list, sources), by_cpu = cpu_->draw(list, sources);
+  ASSERT_TRUE(by_gl.ok() && by_cpu.ok());
+  const test::Difference d = test::compare(by_gl.value(), by_cpu.value());
+  EXPECT_LT(d.rms, kMostRms);
+  EXPECT_LT(d.share_above_8, kMostShare);
+  list.surfaces[1].items.clear();
+  const test::Difference alone = test::compare(cpu_->draw(list, sources).value(), by_cpu.value());
+  EXPECT_GT(alone.share_above_8, 0.03) << "the second file is seen";
 }
 
 TEST_F(Agreement, TestCanFail) {

@@ -193,14 +193,15 @@ TEST_F(Film, PlaysWithCostsAndOrbit) {
   auto file = dyntri::File::open(test::writeTestSphere("film_play.t4d", 4));
   ASSERT_TRUE(file.ok());
   const scene::WorldBox box = scene::worldBox(file.value().header().index_to_world, file.value().header().bounds);
-  const std::vector<float> times{0, 0.5f, 1, 3};
-  host::Film film{scene::defaultShot(box, 1.6), {160, 100, 1}, true, 90, times};
+  host::Film film{{{&file.value(), std::nullopt, true}}, scene::defaultShot(box, 1.6), {160, 100, 1}, true, 90, {}};
+  for (const double time : {0.0, 0.5, 1.0, 3.0}) film.times.push_back(pictureTime(film.files, time));
   stream::PageSource source(file.value(), 1u << 30);
+  const std::array<stream::PageSource*, 1> sources{&source};
   auto renderer = makeOffscreenRenderer("cpu", 1, 0);
-  auto sink = makePngFrames(in("f%d.png"), times.size(), false);
-  ContactSheet sheet(2, times.size(), 0);
+  auto sink = makePngFrames(in("f%d.png"), film.times.size(), false);
+  ContactSheet sheet(2, film.times.size(), 0);
   std::vector<FrameCost> costs;
-  const Status played = play(file.value(), film, source, *renderer.value(), sink.value().get(), &sheet,
+  const Status played = play(film, sources, *renderer.value(), sink.value().get(), &sheet,
                              [&](const FrameCost& cost) { costs.push_back(cost); });
   ASSERT_TRUE(played.ok()) << played.fault().what;
   EXPECT_EQ(filesIn(), 4u);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -31,18 +32,19 @@ class Stage {
   scene::DrawList list(float t) {
     scene::DrawList list = scene::makeDrawList(box, shot, format, smooth);
     const float last_t = file_->header().last_time;
-    const auto pages = scene::choosePages(file_->pages().entries(), t, last_t, list);
+    const auto pages = scene::choosePages(file_->pages().entries(), t, last_t, list, list.surfaces[0]);
     source_->beginFrame();
     for (const std::size_t page : pages) EXPECT_TRUE(source_->load(page).ok());
-    scene::chooseTriangles(*source_, pages, t, last_t, list);
+    scene::chooseTriangles(*source_, pages, t, last_t, list.surfaces[0]);
     return list;
   }
   render::Image draw(render::Renderer& renderer, float t) {
-    auto image = renderer.draw(list(t), *source_);
+    auto image = renderer.draw(list(t), sources());
     EXPECT_TRUE(image.ok()) << (image.ok() ? "" : image.fault().place + ": " + image.fault().what);
     return image.ok() ? std::move(image).value() : render::Image(1, 1);
   }
   const stream::PageSource& source() const { return *source_; }
+  std::array<const stream::Residency*, 1> sources() const { return {&*source_}; }
   const dyntri::File& file() const { return *file_; }
 
   scene::WorldBox box;

@@ -277,7 +277,7 @@ TEST_P(Picture, UnusableFormatsAreFaults) {
                                       scene::Format{20000, 200, 1}, scene::Format{9000, 10, 4}}) {
     scene::DrawList list = stage.list(0.5f);
     list.format = format;
-    const auto image = renderer().draw(list, stage.source());
+    const auto image = renderer().draw(list, stage.sources());
     ASSERT_FALSE(image.ok());
     EXPECT_EQ(image.fault().code, FaultCode::kUsage);
     EXPECT_FALSE(image.fault().remedy.empty());
@@ -301,9 +301,10 @@ TEST(PageSlice, AreaOfTheSphereAtAnyTimeAndClosed) {
   for (const float t : {0.0f, 0.3f, 1.0f, 1.5f, 2.0f, 2.9f, 3.0f}) {
     double area = 0;
     std::size_t corners = 0, edges = 0;
-    for (const scene::DrawItem& item : stage.list(t).items) {
+    const scene::DrawList list = stage.list(t);
+    for (const auto items : render::itemsByPage(list.surfaces[0].items)) {
       render::PageSlice slice;
-      slicer.slice(*stage.source().resident(item.page), item.first, item.count, t, 3, slice);
+      slicer.slice(*stage.source().resident(items.front().page), items, t, 3, slice);
       std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
       for (const auto& [a, b, c] : slice.triangles) {
         const auto p = [&](std::uint32_t i) {

@@ -5,6 +5,8 @@
 #include <glm/vec4.hpp>
 
 #include "player/scene/dyntri_chooser.h"
+#include "player/scene/scene_files.h"
+#include "player/stream/page_source.h"
 #include "tests/player/swept_mesh.h"
 
 namespace tet4d::scene {
@@ -58,9 +60,9 @@ TEST(DrawList, NormalsPointOutUnderAMirrorMap) {
   const AffineMap mirror{{0, 0, 0}, {{{-2, 0, 0}, {0, 1, 0}, {0, 0, 1}}}};
   const WorldBox box = worldBox(mirror, {{-1, -1, -1, 0}, {1, 1, 1, 1}});
   const DrawList list = makeDrawList(box, defaultShot(box, 1), kFormat, true);
-  EXPECT_TRUE(list.mirrored);
+  EXPECT_TRUE(list.surfaces[0].mirrored);
   // Outwards in index space at (1, 0, 0) is +x there; in the world that place is at -2 and outwards is -x.
-  EXPECT_LT((list.normal_to_relative * glm::vec3(1, 0, 0)).x, 0);
+  EXPECT_LT((list.surfaces[0].normal_to_relative * glm::vec3(1, 0, 0)).x, 0);
 }
 
 TEST(DrawList, EmptyAndFlatBoxesGiveFiniteMatrices) {
@@ -77,7 +79,7 @@ TEST(DrawList, EmptyAndFlatBoxesGiveFiniteMatrices) {
 TEST(Chooser, PagesByHalfOpenIntervalsClosedAtTheLastTime) {
   const dyntri::File file = openFile(test::writeTestSphere("chooser_time.t4d", 4));
   const DrawList camera = cameraFor(file);
-  const auto at = [&](float t) { return choosePages(file.pages().entries(), t, 3, camera); };
+  const auto at = [&](float t) { return choosePages(file.pages().entries(), t, 3, camera, camera.surfaces[0]); };
   using Pages = std::vector<std::size_t>;
   EXPECT_EQ(at(0), Pages{0});
   EXPECT_EQ(at(0.999f), Pages{0});
@@ -98,7 +100,8 @@ TEST(Chooser, PagesOutsideTheViewAreCulled) {
   const WorldBox box = worldBox({}, file.header().bounds);
   Shot shot = defaultShot(box, 1.6);
   const auto chosen = [&] {
-    return choosePages(file.pages().entries(), 0.5f, 1, makeDrawList(box, shot, kFormat, true));
+    const DrawList camera = makeDrawList(box, shot, kFormat, true);
+    return choosePages(file.pages().entries(), 0.5f, 1, camera, camera.surfaces[0]);
   };
   using Pages = std::vector<std::size_t>;
   EXPECT_EQ(chosen(), (Pages{0, 1}));
@@ -126,7 +129,8 @@ TEST(Chooser, CountsAreExactAndNothingAliveIsLeftOut) {
   const std::size_t pages[] = {0};
   for (const float t : {0.0f, 0.25f, 1.0f, 1.5f, 2.0f, 2.999f, 3.0f}) {
     DrawList list = cameraFor(file);
-    chooseTriangles(source, pages, t, 3, list);
+    DrawSurface& surface = list.surfaces[0];
+    chooseTriangles(source, pages, t, 3, surface);
     std::uint64_t alive = 0, first = page.triangles.size(), last = 0;
     for (std::size_t i = 0; i < page.lifespans.size(); ++i) {
       const auto [begin, end] = page.lifespans[i];
@@ -136,12 +140,12 @@ TEST(Chooser, CountsAreExactAndNothingAliveIsLeftOut) {
       last = std::max<std::uint64_t>(last, i);
     }
     ASSERT_GT(alive, 0u) << t;
-    EXPECT_EQ(list.drawn, alive) << t;
-    ASSERT_EQ(list.items.size(), 1u);
-    EXPECT_EQ(list.items[0].first, first);
-    EXPECT_EQ(list.items[0].count, last - first + 1);
-    EXPECT_EQ(list.processed, list.items[0].count);
-    EXPECT_LT(list.processed, page.triangles.size()) << "the other frames' triangles are not handed over";
+    EXPECT_EQ(surface.drawn, alive) << t;
+    ASSERT_EQ(surface.items.size(), 1u);
+    EXPECT_EQ(surface.items[0].first, first);
+    EXPECT_EQ(surface.items[0].count, last - first + 1);
+    EXPECT_EQ(surface.processed, surface.items[0].count);
+    EXPECT_LT(surface.processed, page.triangles.size()) << "the other frames' triangles are not handed over";
   }
 }
 
@@ -150,9 +154,62 @@ TEST(Chooser, AbsentPagesAreCountedAndNotDrawn) {
   stream::PageSource source(file, 1u << 30);
   DrawList list = cameraFor(file);
   const std::size_t pages[] = {0};
-  chooseTriangles(source, pages, 0.5f, 2, list);
-  EXPECT_EQ(list.absent, 1u);
-  EXPECT_TRUE(list.items.empty());
+  chooseTriangles(source, pages, 0.5f, 2, list.surfaces[0]);
+  EXPECT_EQ(list.absent(), 1u);
+  EXPECT_TRUE(list.surfaces[0].items.empty());
+}
+
+dyntri::File ballAt(const std::string& name, const AffineMap& map, const std::vector<double>& times) {
+  std::vector<test::Page> pages;
+  for (std::size_t k = 0; k + 1 < times.size(); ++k) {
+    const auto begin = static_cast<int>(k);
+    pages.push_back(test::sweep(test::icosphere(1), test::MovingSphere{}.motion(), begin, begin + 1));
+  }
+  return openFile(test::writeFile(name, pages, {map, times, paged::Codec::kRaw}));
+}
+
+TEST(SceneFiles, OneBoxOneTimeAndEachFileInItsPlace) {
+  AffineMap left, right;
+  left.origin = {-5, 0, 0};
+  right.origin = {5, 0, 0};
+  right.axes[0] = {-2, 0, 0};
+  const dyntri::File a = ballAt("scene_left.t4d", left, {0, 1, 2}), b = ballAt("scene_right.t4d", right, {1, 1.5, 4});
+  const std::vector<SceneFile> files{{&a, std::nullopt, true}, {&b, std::nullopt, true}};
+  const WorldBox box = sceneBox(files);
+  EXPECT_NEAR(box.centre.x, 0.5 * (-6 + 7), 1e-6);
+  EXPECT_NEAR(box.corners[1].x, 6.5, 1e-6);
+  EXPECT_EQ(sceneTimes(files), (std::vector<double>{0, 1, 1.5, 2, 4}));
+  EXPECT_EQ(frameAt(a, 0.5), 0.5f);
+  EXPECT_EQ(frameAt(b, 0.5), std::nullopt);
+  EXPECT_EQ(frameAt(b, 2.75), 1.5f);
+  EXPECT_EQ(frameAt(a, 2), 2.0f);
+  EXPECT_EQ(frameAt(a, 2.1), std::nullopt);
+  Shot shot = defaultShot(box, 1.6);
+  const DrawList list = makeDrawList(files, shot, kFormat, true);
+  ASSERT_EQ(list.surfaces.size(), 2u);
+  const auto place = [](const DrawSurface& s, const glm::vec3& index) {
+    return s.index_to_relative * (index - s.index_centre) + s.offset;
+  };
+  EXPECT_NEAR(place(list.surfaces[0], {1, 0, 0}).x, -4 - box.centre.x, 1e-6);
+  EXPECT_NEAR(place(list.surfaces[1], {1, 0, 0}).x, 3 - box.centre.x, 1e-6);
+  EXPECT_FALSE(list.surfaces[0].mirrored);
+  EXPECT_TRUE(list.surfaces[1].mirrored);
+  EXPECT_NE(list.surfaces[0].front_color, list.surfaces[1].front_color);
+}
+
+TEST(SceneFilesStiff, FarFromTheOriginAndApart) {
+  AffineMap near_map, far_map;
+  near_map.origin = {4.5e6, -3e6, 0};
+  far_map.origin = {4.5e6 + 1e3, -3e6, 0};
+  const dyntri::File a = ballAt("scene_far_a.t4d", near_map, {1.7e9, 1.7e9 + 1e-3});
+  const dyntri::File b = ballAt("scene_far_b.t4d", far_map, {1.7e9, 1.7e9 + 1e-3});
+  const std::vector<SceneFile> files{{&a, std::nullopt, true}, {&b, std::nullopt, true}};
+  const WorldBox box = sceneBox(files);
+  const DrawList list = makeDrawList(files, defaultShot(box, 1.6), kFormat, true);
+  const glm::vec3 apart = list.surfaces[1].offset - list.surfaces[0].offset;
+  EXPECT_NEAR(apart.x, 1e3, 1e-3);
+  EXPECT_EQ(frameAt(a, a.times()[1]), 1.0f);
+  EXPECT_TRUE(sceneBox(std::vector<SceneFile>{}).radius() == 0);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 """tet4d-play as its users meet it. The fields of a case: tests/cli/README.md."""
+import json
 
 SMALL = ["--offscreen", "--size", "64x48", "--renderer", "cpu", "--samples", "1"]
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -35,6 +36,12 @@ def check_other(result):
     assert one != two, "a.png and b.png are the same"
 
 
+def check_twin(result):
+    check_same(result)
+    frame = json.loads((result.directory / "s.json").read_text())["frames"][0]
+    assert frame["drawn"] % 2 == 0 and frame["drawn"] > 0, frame
+
+
 def check_y4m(result):
     film = (result.directory / "film.y4m").read_bytes()
     header, rest = film.split(b"\n", 1)
@@ -54,6 +61,11 @@ CASES = [
      "shell": "tet4d-play {files}/sphere.t4d --offscreen --size 64x48 --renderer cpu --at 1.5f -j 1 -o a.png;"
               " tet4d-play {files}/sphere.t4d --offscreen --size 64x48 --renderer cpu --at 1.5f -j 3 -o b.png",
      "check": check_same},
+    {"name": "a file drawn twice in one scene is the same picture",
+     "shell": "tet4d-play {files}/sphere.t4d --offscreen --size 64x48 --renderer cpu --at 11.25 -o a.png;"
+              " cp {files}/sphere.t4d twin.t4d;"
+              " tet4d-play {files}/sphere.t4d twin.t4d --offscreen --size 64x48 --renderer cpu --at 11.25 -o b.png --stats s.json",
+     "check": check_twin},
     {"name": "flat differs from smooth",
      "shell": "tet4d-play {files}/sphere.t4d --offscreen --size 64x48 --renderer cpu --at 1.5f -o a.png;"
               " tet4d-play {files}/sphere.t4d --offscreen --size 64x48 --renderer cpu --at 1.5f --flat -o b.png",

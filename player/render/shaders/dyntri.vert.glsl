@@ -63,7 +63,7 @@ void main() {
 #else
 
 uniform sampler2D normal_sums;
-uniform vec3 index_centre;
+uniform vec3 index_centre, offset;
 uniform mat3 index_to_relative, normal_to_relative;
 uniform mat4 relative_to_clip;
 
@@ -84,7 +84,7 @@ void main() {
   area = normal_to_relative * area;
   float size = length(area);
   normal = size > 0.0 ? area / size : vec3(0.0);
-  position = index_to_relative * (crossing.position - index_centre);
+  position = index_to_relative * (crossing.position - index_centre) + offset;
   gl_Position = relative_to_clip * vec4(position, 1.0);
 }
 

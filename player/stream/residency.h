@@ -1,0 +1,18 @@
+// What a chooser and a renderer see of a file's pages: those that are in memory, checked and proved.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "formats/dynamic_triangles.h"
+
+namespace tet4d::stream {
+
+class Residency {
+ public:
+  virtual ~Residency() = default;
+  // Page `page`, or nullptr if it is not resident. Never reads, never waits. Valid until the next frame begins.
+  virtual const dyntri::PageView* resident(std::size_t page) const = 0;
+};
+
+}  // namespace tet4d::stream
