@@ -46,6 +46,7 @@ FOREIGN = {
     r"(expat|bzlib|nifti1_io|exodusII|tiny_gltf)\.h|draco/.*|OpenMesh/.*": ["libpreprocess/exchange"],
     r"spng\.h": ["libpreprocess/exchange", "player/host"],
     r"GL/osmesa\.h|GLFW/.*": ["player/host"],
+    r"imgui(_stdlib)?\.h": ["player/render", "player/host"],
     r"glad/.*": ["player/render", "player/host"],
     r"glm/.*": ["libpreprocess", "libpreprocess/*", "player/*", "tools", "tools/tet4d-play"],
     r"CLI/.*": ["tools/common", "tools", "tools/tet4d-play"],

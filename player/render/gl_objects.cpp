@@ -70,6 +70,11 @@ Result<GlProgram> GlProgram::link(const char* name, const std::string& defines, 
                std::string("the driver refuses to link it: ") + log.data(), "use --renderer cpu"};
 }
 
+Status loadGl(void (*(*resolver)(const char*))()) {
+  if (gladLoadGL(resolver) >= GLAD_MAKE_VERSION(3, 3)) return {};
+  return Fault{FaultCode::kNotBuilt, "", "OpenGL", "the driver has no version 3.3", "use --renderer cpu"};
+}
+
 Status checkGl(const char* doing) {
   const GLenum error = glGetError();
   if (error == GL_NO_ERROR) return {};

@@ -71,6 +71,7 @@ class GlProgram {
   void use() const { glUseProgram(name_.get()); }
   void set(const char* uniform, int value) const { glUniform1i(at(uniform), value); }
   void set(const char* uniform, int x, int y) const { glUniform2i(at(uniform), x, y); }
+  void set(const char* uniform, float x, float y) const { glUniform2f(at(uniform), x, y); }
   void set(const char* uniform, float value) const { glUniform1f(at(uniform), value); }
   void set(const char* uniform, const glm::vec3& v) const { glUniform3f(at(uniform), v.x, v.y, v.z); }
   void set(const char* uniform, const glm::mat3& m) const { glUniformMatrix3fv(at(uniform), 1, GL_FALSE, &m[0][0]); }
@@ -80,6 +81,9 @@ class GlProgram {
   GLint at(const char* uniform) const { return glGetUniformLocation(name_.get(), uniform); }
   GlName<ProgramKind> name_;
 };
+
+// Resolves GL's functions by name; Fault kNotBuilt if the current context has no OpenGL 3.3.
+Status loadGl(void (*(*resolver)(const char*))());
 
 // The driver's error since the last call, as a Fault that names what was being done.
 Status checkGl(const char* doing);

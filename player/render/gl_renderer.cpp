@@ -271,9 +271,7 @@ class GlRenderer final : public Renderer {
 }  // namespace
 
 Result<std::unique_ptr<Renderer>> makeGlRenderer(GlResolver resolver, std::uint64_t gpu_budget_bytes) {
-  if (gladLoadGL(resolver) < GLAD_MAKE_VERSION(3, 3)) {
-    return Fault{FaultCode::kNotBuilt, "", "OpenGL", "the driver has no version 3.3", "use --renderer cpu"};
-  }
+  if (Status status = loadGl(resolver); !status.ok()) return status.fault();
   auto programs = makePrograms();
   if (!programs.ok()) return programs.fault();
   return std::unique_ptr<Renderer>(std::make_unique<GlRenderer>(std::move(programs).value(), gpu_budget_bytes));
