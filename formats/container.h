@@ -18,6 +18,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "formats/core/result.h"
@@ -103,6 +104,16 @@ class Reader {
   std::span<const SectionEntry> sections() const { return sections_; }
   std::span<const std::byte> file() const { return {data_.get(), size_}; }
 
+  // For files that stay open while others may write: puts copies in the place of the mapped sections of these kinds, so
+  // that they cannot change or vanish any more. Spans stay valid. O(their bytes).
+  Status ownSections(std::span<const std::uint32_t> kinds);
+  // Copies bytes from the open file, past the mapping: a file that was cut off is a Fault here, and a signal where the
+  // mapping is read. Thread-safe.
+  Status readAt(std::uint64_t offset, std::span<std::byte> out) const;
+  // What became of the file since it was opened. kReplaced: another file, or none, has its name; this one is whole.
+  enum class Fate { kSame, kChanged, kReplaced };
+  Fate fate() const;
+
   const SectionEntry* find(std::uint32_t kind) const;
   // The content of a section that must be there, as items of T (item_bytes must be sizeof(T)).
   template <class T>
@@ -133,9 +144,33 @@ class Reader {
     std::size_t size;  // of the mapping
     void operator()(const std::byte* data) const;
   };
+  // The open file and what it was when it was opened.
+  class Descriptor {
+   public:
+    Descriptor() = default;
+    explicit Descriptor(int fd) : fd_(fd) {}
+    Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+      std::swap(fd_, other.fd_);
+      return *this;
+    }
+    ~Descriptor();
+    int get() const { return fd_; }
+
+   private:
+    int fd_ = -1;
+  };
+  struct Identity {
+    std::uint64_t device = 0, inode = 0, bytes = 0;
+    std::int64_t changed_s = 0, changed_ns = 0;
+    bool operator==(const Identity&) const = default;
+  };
+  static std::optional<Identity> identify(int fd, const char* path);  // of `path` if fd < 0
   Result<std::span<const std::byte>> rawItems(std::uint32_t kind, std::size_t item_bytes, std::size_t alignment) const;
 
   std::string path_;
+  Descriptor descriptor_;
+  Identity identity_;
   std::unique_ptr<const std::byte[], Unmap> data_;
   std::size_t size_ = 0;
   FileHeader header_{};

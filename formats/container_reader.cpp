@@ -155,24 +155,24 @@ void Reader::Unmap::operator()(const std::byte* data) const { munmap(const_cast<
 
 Result<Reader> Reader::open(const std::string& path, std::uint32_t payload, std::uint16_t max_payload_version,
                             std::span<const std::uint32_t> known) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a named pipe must not make us wait
+  Descriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));  // a named pipe must not make us wait
+  const int fd = descriptor.get();
   if (fd < 0) return systemFault(path, "open");
   struct stat info {};
   const bool regular = fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
   const auto size = static_cast<std::uint64_t>(std::max<off_t>(info.st_size, 0));
   if (!regular || size < sizeof(FileHeader)) {
-    ::close(fd);
     return badHeader(path, regular ? "the file has only " + std::to_string(size) + " bytes" : "not a regular file",
                      "containers are mapped: give a complete file");
   }
   void* mapped = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0);
-  const Fault map_fault = mapped == MAP_FAILED ? systemFault(path, "map") : Fault{};
-  ::close(fd);
-  if (mapped == MAP_FAILED) return map_fault;
+  if (mapped == MAP_FAILED) return systemFault(path, "map");
 
   Reader reader;
   reader.path_ = path;
   reader.size_ = size;
+  reader.descriptor_ = std::move(descriptor);
+  reader.identity_ = identify(fd, nullptr).value_or(Identity{});
   reader.data_ = std::unique_ptr<const std::byte[], Unmap>(static_cast<const std::byte*>(mapped), Unmap{size});
   std::memcpy(&reader.header_, mapped, sizeof(FileHeader));
   const FileHeader& header = reader.header_;
@@ -199,6 +199,57 @@ Result<Reader> Reader::open(const std::string& path, std::uint32_t payload, std:
     }
   }
   return reader;
+}
+
+Reader::Descriptor::~Descriptor() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+std::optional<Reader::Identity> Reader::identify(int fd, const char* path) {
+  struct stat info {};
+  if ((fd >= 0 ? fstat(fd, &info) : ::stat(path, &info)) != 0) return std::nullopt;
+  return Identity{static_cast<std::uint64_t>(info.st_dev), static_cast<std::uint64_t>(info.st_ino),
+                  static_cast<std::uint64_t>(info.st_size), info.st_mtim.tv_sec, info.st_mtim.tv_nsec};
+}
+
+Status Reader::ownSections(std::span<const std::uint32_t> kinds) {
+  const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  for (const SectionEntry& s : sections_) {
+    const bool is_wanted = std::find(kinds.begin(), kinds.end(), s.kind) != kinds.end();
+    if (!is_wanted || (s.flags & kSectionPaged) != 0 || s.bytes == 0) continue;
+    // Whole pages of the machine: what they hold beside the section is the file's too, and is copied with it.
+    const std::uint64_t begin = s.offset / page * page, end = (s.offset + s.bytes + page - 1) / page * page;
+    auto* place = const_cast<std::byte*>(data_.get()) + begin;
+    void* owned = mmap(place, end - begin, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0);
+    if (owned == MAP_FAILED) return systemFault(path_, "copy a section");
+    if (Status status = readAt(begin, {place, std::min<std::uint64_t>(end, size_) - begin}); !status.ok())
+      return status;
+  }
+  return {};
+}
+
+Status Reader::readAt(std::uint64_t offset, std::span<std::byte> out) const {
+  std::size_t done = 0;
+  while (done < out.size()) {
+    const ssize_t n =
+        ::pread(descriptor_.get(), out.data() + done, out.size() - done, static_cast<off_t>(offset + done));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return systemFault(path_, "read");
+    if (n == 0) {
+      return Fault{FaultCode::kBadInput, path_, "byte " + std::to_string(offset + done),
+                   "the file ends here, and had " + std::to_string(size_) + " bytes when it was opened",
+                   "the file was cut off while it was open: write it again"};
+    }
+    done += static_cast<std::size_t>(n);
+  }
+  return {};
+}
+
+Reader::Fate Reader::fate() const {
+  if (identify(descriptor_.get(), nullptr) != identity_) return Fate::kChanged;
+  const auto named = identify(-1, path_.c_str());
+  const bool is_same = named && named->device == identity_.device && named->inode == identity_.inode;
+  return is_same ? Fate::kSame : Fate::kReplaced;
 }
 
 Result<FileHeader> peek(const std::string& path) {

@@ -8,6 +8,7 @@
 namespace tet4d::dyntri {
 namespace {
 
+constexpr std::array kOwned{kHeader, kTimes, paged::kPageTable};  // copied when a file is opened
 constexpr std::array kKnown{kHeader, kTimes, paged::kPages, paged::kPageTable};
 
 bool anySet(std::span<const std::uint64_t> reserved) {
@@ -116,6 +117,8 @@ Result<File> File::open(const std::string& path) {
   if (!opened.ok()) return opened.fault();
   File file;
   file.reader_ = std::make_unique<container::Reader>(std::move(opened).value());
+  // A player keeps it open for long: only its pages stay in the mapping.
+  if (Status status = file.reader_->ownSections(kOwned); !status.ok()) return status.fault();
   const container::Reader& reader = *file.reader_;
   auto header = reader.single<Header>(kHeader);
   if (!header.ok()) return header.fault();

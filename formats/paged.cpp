@@ -66,23 +66,21 @@ Status checkEntry(const std::string& path, std::size_t i, const PageEntry& e, st
 #ifdef TET4D_WITH_ZSTD
 constexpr int kZstdLevel = 3;
 
-Status decodeZstd(const std::string& path, std::size_t i, std::span<const std::byte> stored, const PageEntry& e,
-                  std::vector<std::uint64_t>& out) {
+Status checkZstd(const std::string& path, std::size_t i, std::span<const std::byte> stored, std::uint64_t raw_bytes) {
   // ZSTD_decompress would take several frames and skippable ones; a page is exactly one, complete.
   if (ZSTD_findFrameCompressedSize(stored.data(), stored.size()) != stored.size()) {
     return badPage(path, i, "is not exactly one compressed frame");
   }
-  if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != e.raw_bytes) {
+  if (ZSTD_getFrameContentSize(stored.data(), stored.size()) != raw_bytes) {
     return badPage(path, i, "the compressed frame has another size than the page table says");
   }
-  try {
-    out.resize((e.raw_bytes + 7) / 8);
-  } catch (const std::bad_alloc&) {
-    return Fault{FaultCode::kOutOfMemory, path, "page " + std::to_string(i),
-                 "no memory for " + std::to_string(e.raw_bytes) + " bytes", "use a machine with more memory"};
-  }
-  const std::size_t n = ZSTD_decompress(out.data(), e.raw_bytes, stored.data(), stored.size());
-  if (ZSTD_isError(n) != 0U || n != e.raw_bytes) return badPage(path, i, "the compressed frame is damaged");
+  return {};
+}
+
+Status decodeZstd(const std::string& path, std::size_t i, std::span<const std::byte> stored,
+                  std::span<std::byte> decoded) {
+  const std::size_t n = ZSTD_decompress(decoded.data(), decoded.size(), stored.data(), stored.size());
+  if (ZSTD_isError(n) != 0U || n != decoded.size()) return badPage(path, i, "the compressed frame is damaged");
   return {};
 }
 #endif
@@ -125,20 +123,57 @@ Result<Pages> Pages::open(const container::Reader& reader) {
 Result<PageBytes> Pages::load(std::size_t i) const {
   const PageEntry& e = entries_[i];
   const auto stored = reader_->file().subspan(e.offset, e.bytes);
-  if (container::xxh3(stored) != e.xxh3) return badPage(reader_->path(), i, "checksum mismatch");
+  // Before memory is taken for what a damaged page claims.
+  if (Status status = checkStored(i, stored); !status.ok()) return status.fault();
   PageBytes page;
   page.touched_ = e.bytes;
   if (e.codec == static_cast<std::uint32_t>(Codec::kRaw)) {
     page.view_ = stored;
     return page;
   }
-#ifdef TET4D_WITH_ZSTD
-  if (Status status = decodeZstd(reader_->path(), i, stored, e, page.owned_); !status.ok()) return status.fault();
-  page.view_ = std::as_bytes(std::span(page.owned_)).first(e.raw_bytes);
+  try {
+    page.owned_.resize((e.raw_bytes + 7) / 8);
+  } catch (const std::bad_alloc&) {
+    return Fault{FaultCode::kOutOfMemory, reader_->path(), "page " + std::to_string(i),
+                 "no memory for " + std::to_string(e.raw_bytes) + " bytes", "use a machine with more memory"};
+  }
+  const auto decoded = std::as_writable_bytes(std::span(page.owned_)).first(e.raw_bytes);
+  if (Status status = decodeStored(i, stored, decoded); !status.ok()) return status.fault();
+  page.view_ = decoded;
   return page;
+}
+
+Status Pages::readStored(std::size_t i, std::span<std::byte> stored) const {
+  Status status = reader_->readAt(entries_[i].offset, stored);
+  if (status.ok()) return status;
+  Fault fault = status.fault();
+  fault.place = "page " + std::to_string(i) + (fault.place.empty() ? "" : ", " + fault.place);
+  return fault;
+}
+
+Status Pages::decode(std::size_t i, std::span<const std::byte> stored, std::span<std::byte> decoded) const {
+  if (Status status = checkStored(i, stored); !status.ok()) return status;
+  return entries_[i].codec == static_cast<std::uint32_t>(Codec::kRaw) ? Status{} : decodeStored(i, stored, decoded);
+}
+
+Status Pages::checkStored(std::size_t i, std::span<const std::byte> stored) const {
+  const PageEntry& e = entries_[i];
+  if (container::xxh3(stored) != e.xxh3) return badPage(reader_->path(), i, "checksum mismatch");
+  if (e.codec == static_cast<std::uint32_t>(Codec::kRaw)) return {};
+#ifdef TET4D_WITH_ZSTD
+  return checkZstd(reader_->path(), i, stored, e.raw_bytes);
 #else
   return Fault{FaultCode::kNotBuilt, reader_->path(), "page " + std::to_string(i), "is compressed with zstd",
                "rebuild with TET4D_WITH_ZSTD=ON, or write the file with --page-codec raw"};
+#endif
+}
+
+Status Pages::decodeStored([[maybe_unused]] std::size_t i, [[maybe_unused]] std::span<const std::byte> stored,
+                           [[maybe_unused]] std::span<std::byte> decoded) const {
+#ifdef TET4D_WITH_ZSTD
+  return decodeZstd(reader_->path(), i, stored, decoded);
+#else
+  return {};  // checkStored() has refused it
 #endif
 }
 

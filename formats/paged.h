@@ -65,6 +65,11 @@ class Pages {
   std::size_t size() const { return entries_.size(); }
   // Checks and decodes page i. O(its bytes). Fault names the page. Thread-safe.
   Result<PageBytes> load(std::size_t i) const;
+  // The same in two steps that never touch the mapping, for readers that stay open while others may write: the stored
+  // bytes are copied into `stored` (entry.bytes long), then checked and decoded into `decoded` (entry.raw_bytes long,
+  // 8-byte aligned; of a raw page they are what `stored` is, and `decoded` is not used). Thread-safe.
+  Status readStored(std::size_t i, std::span<std::byte> stored) const;
+  Status decode(std::size_t i, std::span<const std::byte> stored, std::span<std::byte> decoded) const;
   // A digest of the decoded pages in order, the same for every codec. Raw pages cost nothing (their checksum stands in
   // the table), others are decoded. O(compressed pages).
   Result<std::uint64_t> contentDigest() const;
@@ -72,6 +77,9 @@ class Pages {
   Status verifyPadding() const;
 
  private:
+  Status checkStored(std::size_t i, std::span<const std::byte> stored) const;
+  Status decodeStored(std::size_t i, std::span<const std::byte> stored, std::span<std::byte> decoded) const;
+
   const container::Reader* reader_ = nullptr;
   std::span<const PageEntry> entries_;
 };
