@@ -13,6 +13,27 @@ struct Table {
   std::size_t texel_bytes;
 };
 
+// A buffer texture of the table, bound to the unit.
+Status upload(const Table& table, std::size_t number, int unit, GlBuffer& buffer, GlTexture& texture) {
+  GLint most_texels = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels);
+  const std::size_t texels = table.bytes.size() / table.texel_bytes;
+  if (texels > static_cast<std::size_t>(most_texels)) {
+    return Fault{
+        FaultCode::kOutOfMemory, "", "page " + std::to_string(number),
+        "a table of " + std::to_string(texels) + " texels exceeds the driver's limit of " + std::to_string(most_texels),
+        "use --renderer cpu"};
+  }
+  buffer = GlBuffer::create();
+  texture = GlTexture::create();
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindBuffer(GL_TEXTURE_BUFFER, buffer.get());
+  glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(table.bytes.size()), table.bytes.data(), GL_STATIC_DRAW);
+  glBindTexture(GL_TEXTURE_BUFFER, texture.get());
+  glTexBuffer(GL_TEXTURE_BUFFER, table.format, buffer.get());
+  return {};
+}
+
 }  // namespace
 
 void GlPage::bind() const {
@@ -22,7 +43,7 @@ void GlPage::bind() const {
   }
 }
 
-Result<const GlPage*> GlPages::get(std::size_t source, std::size_t number, const dyntri::PageView& page) {
+Result<GlPage*> GlPages::get(std::size_t source, std::size_t number, const dyntri::PageView& page) {
   if (const auto found = pages_.find({source, number}); found != pages_.end()) {
     found->second.last_frame = frame_;
     return &found->second;
@@ -31,33 +52,40 @@ Result<const GlPage*> GlPages::get(std::size_t source, std::size_t number, const
                            {GL_RG32UI, std::as_bytes(page.edges), 8},
                            {GL_R32UI, std::as_bytes(page.triangles), 4},
                            {GL_RG32F, std::as_bytes(page.lifespans), 8}};
-  GLint most_texels = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels);
   GlPage copy;
   for (unsigned unit = 0; unit < 4; ++unit) {
-    const Table& table = tables[unit];
-    const std::size_t texels = table.bytes.size() / table.texel_bytes;
-    if (texels > static_cast<std::size_t>(most_texels)) {
-      return Fault{FaultCode::kOutOfMemory, "", "page " + std::to_string(number),
-                   "a table of " + std::to_string(texels) + " texels exceeds the driver's limit of " +
-                       std::to_string(most_texels),
-                   "use --renderer cpu"};
-    }
-    copy.buffers[unit] = GlBuffer::create();
-    copy.textures[unit] = GlTexture::create();
-    glActiveTexture(GL_TEXTURE0 + unit);
-    glBindBuffer(GL_TEXTURE_BUFFER, copy.buffers[unit].get());
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(table.bytes.size()), table.bytes.data(), GL_STATIC_DRAW);
-    glBindTexture(GL_TEXTURE_BUFFER, copy.textures[unit].get());
-    glTexBuffer(GL_TEXTURE_BUFFER, table.format, copy.buffers[unit].get());
-    copy.bytes += table.bytes.size();
+    if (Status status = upload(tables[unit], number, static_cast<int>(unit), copy.buffers[unit], copy.textures[unit]);
+        !status.ok())
+      return status.fault();
+    copy.bytes += tables[unit].bytes.size();
   }
   if (Status status = checkGl("upload of a page"); !status.ok()) return status.fault();
+  copy.number = number;
   copy.last_frame = frame_;
   copy.edge_count = static_cast<GLint>(page.edges.size());
   copy.key_count = static_cast<GLint>(page.edges.size() + page.vertices.size());
   bytes_ += copy.bytes;
   return &pages_.emplace(std::pair(source, number), std::move(copy)).first->second;
+}
+
+Status GlPages::bindColumn(GlPage& page, std::size_t column, std::span<const float> rows, int unit) {
+  const auto [found, is_new] = page.columns.try_emplace(column);
+  GlColumn& copy = found->second;
+  if (!is_new) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_BUFFER, copy.texture.get());
+    return {};
+  }
+  const Table table{GL_R32F, std::as_bytes(rows), sizeof(float)};
+  Status status = upload(table, page.number, unit, copy.buffer, copy.texture);
+  if (status.ok()) status = checkGl("upload of a column");
+  if (!status.ok()) {
+    page.columns.erase(found);
+    return status;
+  }
+  page.bytes += rows.size_bytes();
+  bytes_ += rows.size_bytes();
+  return {};
 }
 
 void GlPages::evict() {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "formats/dynamic_triangles.h"
@@ -10,12 +11,16 @@
 
 namespace tet4d::render {
 
-// Texture units of the lookup shader.
-enum GlUnit : int { kVerticesUnit, kEdgesUnit, kTrianglesUnit, kLifespansUnit, kNormalSumsUnit };
+struct GlColumn {
+  GlBuffer buffer;
+  GlTexture texture;
+};
 
 struct GlPage {
   GlBuffer buffers[4];
-  GlTexture textures[4];  // by unit
+  GlTexture textures[4];                    // by unit
+  std::map<std::size_t, GlColumn> columns;  // those drawn so far
+  std::size_t number = 0;
   std::uint64_t bytes = 0;
   std::uint64_t last_frame = 0;
   GLint edge_count = 0;
@@ -35,7 +40,9 @@ class GlPages {
   }
   // The copy of page `number` of a source, made from `page` if there is none. Fault if a table exceeds the driver's
   // limit.
-  Result<const GlPage*> get(std::size_t source, std::size_t number, const dyntri::PageView& page);
+  Result<GlPage*> get(std::size_t source, std::size_t number, const dyntri::PageView& page);
+  // Binds the copy of a column of `page` to a unit, made from `rows` if there is none.
+  Status bindColumn(GlPage& page, std::size_t column, std::span<const float> rows, int unit);
   // Drops the copies used longest ago, none of this frame, until the budget holds.
   void evict();
 

@@ -68,6 +68,10 @@ Image scaleDown(const Image& image, std::uint32_t width, std::uint32_t height) {
   return out;
 }
 
+std::uint8_t toSrgb8(float linear) { return encodeStep(kEncoderSteps * std::max(linear, 0.0f)); }
+
+float fromSrgb8(std::uint8_t code) { return kDecoder[code]; }
+
 Image boxFilter(const Image& image, std::uint32_t side) {
   if (side == 1) return image;
   Image out(image.width / side, image.height / side);

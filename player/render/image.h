@@ -17,6 +17,10 @@ struct Image {
   const std::uint8_t* row(std::uint32_t y) const { return rgba.data() + std::size_t{4} * width * y; }
 };
 
+// A channel of the picture from linear light (clamped to 0..1) and back, by tables.
+std::uint8_t toSrgb8(float linear);
+float fromSrgb8(std::uint8_t code);
+
 // Averages blocks of side x side pixels in linear light. width and height must be multiples of side.
 Image boxFilter(const Image& image, std::uint32_t side);
 

@@ -29,6 +29,7 @@ std::uint32_t PageSlicer::vertexOf(const dyntri::PageView& page, std::uint32_t e
     vertex = static_cast<std::uint32_t>(out.positions.size());
     out.positions.push_back(interpolateAt(page.vertices[a], page.vertices[b], t));
     out.areas.push_back({0, 0, 0});
+    out.keys.push_back(static_cast<std::uint32_t>(key));
   }
   return vertex;
 }
@@ -48,7 +49,7 @@ void PageSlicer::addTriangle(const dyntri::PageView& page, std::uint64_t triangl
 void PageSlicer::slice(const dyntri::PageView& page, std::span<const scene::DrawItem> items, float t, float last_t,
                        PageSlice& out) {
   vertex_of_key_.assign(page.edges.size() + page.vertices.size(), kNone);
-  out.positions.clear(), out.areas.clear(), out.triangles.clear();
+  out.positions.clear(), out.areas.clear(), out.keys.clear(), out.triangles.clear();
   for (const scene::DrawItem& item : items) {
     for (std::uint64_t i = item.first; i < item.first + item.count; ++i) {
       const dyntri::Lifespan& life = page.lifespans[i];

@@ -15,6 +15,7 @@ namespace tet4d::render {
 struct PageSlice {
   std::vector<Vec3f> positions;                         // index space
   std::vector<Vec3f> areas;                             // sum of the cross products of the triangles at the vertex
+  std::vector<std::uint32_t> keys;                      // of each vertex: its edge, or edges + end of the edge
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise from outside; no two corners alike
 };
 

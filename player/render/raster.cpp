@@ -32,7 +32,7 @@ float distanceTo(const glm::vec4& clip, int plane) {
 
 RasterVertex mix(const RasterVertex& a, const RasterVertex& b, float s) {
   return {a.clip + s * (b.clip - a.clip), a.position + s * (b.position - a.position),
-          a.normal + s * (b.normal - a.normal)};
+          a.normal + s * (b.normal - a.normal), a.value + s * (b.value - a.value)};
 }
 
 // Sutherland-Hodgman against one plane.
@@ -59,11 +59,14 @@ std::int32_t ceilPixel(std::int32_t fixed) { return (fixed + kSubPixels - 1) >> 
 
 }  // namespace
 
-Raster::Raster(std::uint32_t width, std::uint32_t height)
-    : width_(width),
-      height_(height),
-      depths_(std::size_t{width} * height, 1.0f),
-      ids_(std::size_t{width} * height, kNothing) {}
+void Raster::begin(std::uint32_t width, std::uint32_t height) {
+  width_ = width;
+  height_ = height;
+  vertices_.clear();
+  triangles_.clear();
+  depths_.assign(std::size_t{width} * height, 1.0f);
+  ids_.assign(std::size_t{width} * height, kNothing);
+}
 
 void Raster::beginSurface(std::uint32_t number, bool mirrored) {
   surface_ = number;
@@ -178,10 +181,11 @@ Raster::Sample Raster::sampleAt(std::uint32_t id, std::uint32_t x, std::uint32_t
     weight[k] = static_cast<float>(value) / vertices_[triangle.vertex[k]].clip.w;
     sum += weight[k];
   }
-  Sample sample{glm::vec3(0), glm::vec3(0), triangle.front, triangle.surface};
+  Sample sample{glm::vec3(0), glm::vec3(0), 0, triangle.front, triangle.surface};
   for (std::size_t k = 0; k < 3; ++k) {
     sample.position += weight[k] / sum * vertices_[triangle.vertex[k]].position;
     sample.normal += weight[k] / sum * vertices_[triangle.vertex[k]].normal;
+    sample.value += weight[k] / sum * vertices_[triangle.vertex[k]].value;
   }
   return sample;
 }

@@ -17,6 +17,7 @@ struct RasterVertex {
   glm::vec4 clip;
   glm::vec3 position;  // relative to the box's centre
   glm::vec3 normal;
+  float value = 0;  // of a column
 };
 
 inline constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::max();
@@ -24,7 +25,10 @@ inline constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::ma
 class Raster {
  public:
   // y runs up, as in OpenGL.
-  Raster(std::uint32_t width, std::uint32_t height);
+  Raster(std::uint32_t width, std::uint32_t height) { begin(width, height); }
+
+  // Empties it for a new picture; memory is kept.
+  void begin(std::uint32_t width, std::uint32_t height);
 
   // What add() brings from now on belongs to surface `number`; mirrored: its clockwise triangles are the front ones.
   void beginSurface(std::uint32_t number, bool mirrored);
@@ -38,6 +42,7 @@ class Raster {
 
   struct Sample {
     glm::vec3 position, normal;
+    float value;
     bool front;
     std::uint32_t surface;
   };
@@ -60,7 +65,7 @@ class Raster {
   std::array<Edge, 3> edgesOf(const Triangle& triangle) const;
   void resolveTriangle(std::uint32_t id, unsigned band, unsigned bands);
 
-  std::uint32_t width_, height_;
+  std::uint32_t width_ = 0, height_ = 0;
   bool mirrored_ = false;
   std::uint32_t surface_ = 0;
   std::vector<RasterVertex> vertices_;

@@ -70,7 +70,7 @@ glm::vec3 linearOf(const glm::dvec3& srgb) {
 }
 
 // The walls of the box whose inner side the viewer sees. Of a convex body these never hide one another.
-std::vector<DrawPanel> panelsOf(const WorldBox& box, const glm::dvec3& color, const DrawList& camera) {
+std::vector<DrawPanel> panelsOf(const WorldBox& box, const Background& background, const DrawList& camera) {
   std::vector<DrawPanel> panels;
   const glm::dvec3 viewer(camera.eye_or_backward);
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -84,8 +84,14 @@ std::vector<DrawPanel> panelsOf(const WorldBox& box, const glm::dvec3& color, co
       if (!(glm::dot(outward, to_viewer) < 0)) continue;  // seen from outside, or no area
       // A little shade tells floor and walls apart.
       const glm::dvec3 n = glm::abs(glm::normalize(outward));
-      DrawPanel panel{{}, glm::vec3(color * (1 - 0.05 * n.z - 0.025 * n.y))};
+      DrawPanel panel{{}, glm::vec3(*background.room * (1 - 0.05 * n.z - 0.025 * n.y)), glm::vec2(0)};
       std::copy(corners.begin(), corners.end(), panel.corners.begin());
+      if (background.checker > 0) {
+        // Squares of one size on all walls.
+        const double square = 2 * box.radius() / std::sqrt(3.0) / static_cast<double>(background.checker);
+        panel.squares = {std::ceil(glm::length(corners[1] - corners[0]) / square - 1e-6),
+                         std::ceil(glm::length(corners[2] - corners[1]) / square - 1e-6)};
+      }
       panels.push_back(panel);
     }
   }
@@ -115,7 +121,9 @@ DrawList makeCamera(const WorldBox& box, const Shot& shot, const Format& format,
   list.ambient = glm::vec3(shot.ambient);
   list.background_top = glm::vec3(shot.background.top);
   list.background_bottom = glm::vec3(shot.background.bottom);
-  if (shot.background.room) list.panels = panelsOf(box, *shot.background.room, list);
+  if (shot.background.room) list.panels = panelsOf(box, shot.background, list);
+  list.up = glm::vec3(glm::normalize(shot.view.up));
+  list.refraction_depth = static_cast<float>(box.radius() / 2);
   return list;
 }
 
@@ -130,6 +138,8 @@ DrawSurface makeSurface(const WorldBox& own, const glm::dvec3& scene_centre, con
   surface.back_color = linearOf(material.back_color);
   surface.specular = static_cast<float>(material.specular);
   surface.shininess = static_cast<float>(material.shininess);
+  surface.refraction = static_cast<float>(material.refraction);
+  surface.tint = static_cast<float>(material.tint);
   return surface;
 }
 

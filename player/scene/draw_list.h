@@ -4,14 +4,18 @@
 // same picture. All lengths are world units, all colours linear except where said.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
+#include "player/scene/draw_column.h"
 #include "player/scene/shot.h"
 #include "player/scene/world_box.h"
 
@@ -32,7 +36,10 @@ struct DrawLight {
 struct DrawPanel {
   std::array<glm::vec3, 4> corners;  // relative to the box's centre, around the quadrilateral
   glm::vec3 color;                   // sRGB
+  glm::vec2 squares{0};              // of a checker along the sides 0-1 and 1-2; 0: one colour
 };
+// The darker squares of a checker.
+inline constexpr float kCheckerShade = 0.8f;
 
 // A run of one page's triangles. Items of one page stand together; all triangles alive at t that the page has lie
 // within them.
@@ -54,6 +61,10 @@ struct DrawSurface {
 
   glm::vec3 front_color{0}, back_color{0};
   float specular = 0, shininess = 1;
+  // 0: opaque; 1 to 3: the index of what lies inside, see Material. `tint`: how much of the light takes the colour.
+  float refraction = 0, tint = 0;
+  std::optional<DrawColumn> column;          // colours by a column, both sides alike, in place of the two colours
+  std::optional<std::size_t> normal_column;  // three components, unit, world; without: normals of the slice
 
   float t = 0, last_t = 0;  // frames
   std::vector<DrawItem> items;
@@ -74,12 +85,17 @@ struct DrawList {
   glm::vec3 ambient{0};
   glm::vec3 background_top{0}, background_bottom{0};  // sRGB: the gradient runs in the encoded values
   std::vector<DrawPanel> panels;                      // behind everything, over the gradient; they do not overlap
+  glm::vec3 up{0, 0, 1};                              // unit: where background_top is, for what a surface mirrors
+  float refraction_depth = 1;  // world units that a refracted ray goes before it meets the background
   std::vector<DrawSurface> surfaces;
 
   // Sums over the surfaces.
   std::uint64_t processed() const { return sum(&DrawSurface::processed); }
   std::uint64_t drawn() const { return sum(&DrawSurface::drawn); }
   std::uint64_t absent() const { return sum(&DrawSurface::absent); }
+  bool refracts() const {
+    return std::any_of(surfaces.begin(), surfaces.end(), [](const DrawSurface& s) { return s.refraction > 0; });
+  }
 
  private:
   std::uint64_t sum(std::uint64_t DrawSurface::*count) const {

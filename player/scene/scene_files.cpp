@@ -79,6 +79,8 @@ DrawList makeDrawList(std::span<const SceneFile> files, const Shot& shot, const 
   for (std::size_t i = 0; i < files.size(); ++i) {
     list.surfaces.push_back(makeSurface(boxOf(files[i]), box.centre, materialOf(files, i, shot)));
     list.surfaces.back().source = i;
+    list.surfaces.back().column = files[i].column;
+    list.surfaces.back().normal_column = files[i].normal_column;
   }
   return list;
 }

@@ -35,12 +35,15 @@ struct Material {
   glm::dvec3 back_color{0.27, 0.47, 0.60};  // sRGB, of the other side
   double specular = 0.25;                   // linear, >= 0
   double shininess = 48;                    // exponent of Phong's highlight, >= 1
+  double refraction = 0;  // 0: opaque; 1..3: index of what lies inside, behind which the background shows
+  double tint = 0;        // 0..1, with refraction: how much of what shows through takes the colour
 };
 
 struct Background {
   glm::dvec3 top{0.97, 0.975, 0.98}, bottom{0.80, 0.83, 0.86};  // sRGB, a vertical gradient
   // sRGB: the far walls and the floor of the data's box, behind everything; without: nothing but the gradient.
   std::optional<glm::dvec3> room = glm::dvec3(0.88, 0.90, 0.915);
+  unsigned checker = 0;  // squares along a wall of the room, about; 0: plain walls
 };
 
 struct Shot {

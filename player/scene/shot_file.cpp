@@ -182,13 +182,17 @@ void readMaterial(ObjectReader& reader, Material& material) {
   const Json* object = reader.find("material");
   if (object == nullptr) return;
   ObjectReader inner = reader.inner(*object, "material");
-  if (!inner.accepts({"color", "back_color", "specular", "shininess"})) return;
+  if (!inner.accepts({"color", "back_color", "specular", "shininess", "refraction", "tint"})) return;
   inner.srgb("color", material.color);
   // One colour given means one colour on both sides.
   if (inner.has("color")) material.back_color = material.color;
   inner.srgb("back_color", material.back_color);
   inner.number("specular", material.specular, 0, 1000, "a number >= 0");
   inner.number("shininess", material.shininess, 1, 10000, "an exponent between 1 and 10000");
+  inner.number("refraction", material.refraction, 0, 3, "0 for opaque, or an index between 1 and 3");
+  if (material.refraction > 0 && material.refraction < 1)
+    inner.raise("refraction", "lies between 0 and 1", "give 0 for opaque, or an index between 1 and 3: water has 1.33");
+  inner.number("tint", material.tint, 0, 1, "a number between 0 and 1");
 }
 
 void readBackground(ObjectReader& reader, Background& background) {
@@ -201,9 +205,12 @@ void readBackground(ObjectReader& reader, Background& background) {
     return;
   }
   ObjectReader inner = reader.inner(*value, "background");
-  if (!inner.accepts({"top", "bottom", "room"})) return;
+  if (!inner.accepts({"top", "bottom", "room", "checker"})) return;
   inner.srgb("top", background.top);
   inner.srgb("bottom", background.bottom);
+  double checker = background.checker;
+  inner.number("checker", checker, 0, 1000, "a number of squares between 0 and 1000");
+  background.checker = static_cast<unsigned>(checker);
   if (const Json* room = inner.find("room")) {
     if (*room == false) return background.room.reset();
     glm::dvec3 color(0);
@@ -272,11 +279,11 @@ std::string formatShot(const Shot& shot) {
     json["lights"].push_back({{"direction", toJson(light.direction)}, {"color", toJson(light.color)}});
   }
   json["ambient"] = toJson(shot.ambient);
-  json["material"] = {{"color", toJson(shot.material.color)},
-                      {"back_color", toJson(shot.material.back_color)},
-                      {"specular", shot.material.specular},
-                      {"shininess", shot.material.shininess}};
+  json["material"] = {{"color", toJson(shot.material.color)},   {"back_color", toJson(shot.material.back_color)},
+                      {"specular", shot.material.specular},     {"shininess", shot.material.shininess},
+                      {"refraction", shot.material.refraction}, {"tint", shot.material.tint}};
   json["background"] = {{"top", toJson(shot.background.top)}, {"bottom", toJson(shot.background.bottom)}};
+  json["background"]["checker"] = shot.background.checker;
   json["background"]["room"] = shot.background.room ? toJson(*shot.background.room) : Json(false);
   return json.dump(2) + "\n";
 }

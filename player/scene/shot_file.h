@@ -5,8 +5,11 @@
 //     "near": 0.1, "far": 100,                                     distances along the view
 //     "lights": [{"direction": [x,y,z], "color": [r,g,b]}, …],     the way the light travels; linear
 //     "ambient": [r,g,b],                                          linear
-//     "material": {"color": [r,g,b], "back_color": [r,g,b], "specular": 0.25, "shininess": 48},   sRGB
-//     "background": [r,g,b]  |  {"top": [r,g,b], "bottom": [r,g,b], "room": [r,g,b] | false} }    sRGB
+//     "material": {"color": [r,g,b], "back_color": [r,g,b], "specular": 0.25, "shininess": 48,   sRGB
+//                  "refraction": 0 | 1..3, "tint": 0..1},                    opaque, or an index; how much of the
+//                  colour
+//     "background": [r,g,b]  |  {"top": [r,g,b], "bottom": [r,g,b], "room": [r,g,b] | false,     sRGB
+//                                                                 "checker": squares a wall} }
 // A background of one colour has no room; "room" is the far walls and the floor of the data's box.
 #pragma once
 

@@ -13,6 +13,12 @@ class Residency {
   virtual ~Residency() = default;
   // Page `page`, or nullptr if it is not resident. Never reads, never waits. Valid until the next frame begins.
   virtual const dyntri::PageView* resident(std::size_t page) const = 0;
+  // The page's values of column `column` of the file: one row of its components for each of the page's vertices, any
+  // float; empty if they are not resident. Valid until the next frame begins.
+  virtual std::span<const float> residentColumn(std::size_t page, std::size_t column) const {
+    static_cast<void>(page), static_cast<void>(column);
+    return {};
+  }
 };
 
 }  // namespace tet4d::stream

@@ -17,6 +17,8 @@ uniform ivec2 sums_size;  // texels of the normal sums: key k stands at (k % wid
 struct Crossing {
   vec3 position;  // index space
   int key;        // the edge, or edge_count + the end where t is exactly that end's time
+  ivec2 ends;
+  float lambda;
 };
 
 // As interpolateAt() in formats/core/tet_slice.h, and the keys of player/render/page_slice.h.
@@ -25,10 +27,10 @@ Crossing crossingOf(int triangle, int corner) {
   uvec2 ends = texelFetch(edges, edge).xy;
   vec4 a = texelFetch(vertices, int(ends.x));
   vec4 b = texelFetch(vertices, int(ends.y));
-  if (t == b.w) return Crossing(b.xyz, edge_count + int(ends.y));
+  if (t == b.w) return Crossing(b.xyz, edge_count + int(ends.y), ivec2(ends), 1.0);
   float lambda = (t - a.w) / (b.w - a.w);
   int key = t == a.w ? edge_count + int(ends.x) : edge;
-  return Crossing(a.xyz + lambda * (b.xyz - a.xyz), key);
+  return Crossing(a.xyz + lambda * (b.xyz - a.xyz), key, ivec2(ends), lambda);
 }
 
 // Half-open, closed at the last time: isAlive() in formats/core/tet_slice.h.
@@ -67,21 +69,55 @@ uniform vec3 index_centre, offset;
 uniform mat3 index_to_relative, normal_to_relative;
 uniform mat4 relative_to_clip;
 
+uniform bool has_file_normals;
+uniform samplerBuffer file_normals;  // x, y, z of vertex v at 3 v, world
+uniform int components;              // of the column, 0: no column, or its page is not there
+uniform int component;               // -1: the length
+uniform samplerBuffer column;        // of vertex v from v * components
+
 out vec3 position, normal;
+out float value;
+
+float between(float a, float b, float lambda) {
+  return lambda == 0.0 ? a : lambda == 1.0 ? b : a + lambda * (b - a);
+}
+
+vec3 fileNormal(Crossing c) {
+  vec3 n;
+  for (int i = 0; i < 3; ++i) {
+    n[i] = between(texelFetch(file_normals, 3 * c.ends.x + i).x, texelFetch(file_normals, 3 * c.ends.y + i).x, c.lambda);
+  }
+  return n;
+}
+
+// As valueOf() in player/render/slice_columns.h.
+float columnValue(Crossing c) {
+  if (components == 0) return uintBitsToFloat(0x7fc00000u);  // NaN
+  float squares = 0.0;
+  for (int i = 0; i < components; ++i) {
+    float x = between(texelFetch(column, components * c.ends.x + i).x, texelFetch(column, components * c.ends.y + i).x,
+                      c.lambda);
+    if (i == component) return x;
+    squares += x * x;
+  }
+  return sqrt(squares);
+}
 
 void main() {
   int triangle = gl_VertexID / 3;
   position = vec3(0.0);
   normal = vec3(0.0);
+  value = 0.0;
   gl_Position = kOutside;
   if (!isAlive(triangle)) return;
   Crossing crossing = crossingOf(triangle, gl_VertexID % 3);
+  value = columnValue(crossing);
 #ifdef FLAT
-  vec3 area = areaVector(triangle);
+  vec3 area = normal_to_relative * areaVector(triangle);
 #else
-  vec3 area = texelFetch(normal_sums, ivec2(crossing.key % sums_size.x, crossing.key / sums_size.x), 0).xyz;
+  vec3 area = has_file_normals ? fileNormal(crossing)
+                               : normal_to_relative * texelFetch(normal_sums, ivec2(crossing.key % sums_size.x, crossing.key / sums_size.x), 0).xyz;
 #endif
-  area = normal_to_relative * area;
   float size = length(area);
   normal = size > 0.0 ? area / size : vec3(0.0);
   position = index_to_relative * (crossing.position - index_centre) + offset;
