@@ -24,6 +24,8 @@ namespace {
 
 using namespace tet4d;
 
+constexpr std::uint64_t kMostIoThreads = 64;
+
 struct Options {
   std::vector<std::string> inputs;
   bool offscreen = false, flat = false;
@@ -31,7 +33,8 @@ struct Options {
   std::string at, times, camera, write_camera, contact_sheet;
   std::string renderer = host::hasOffscreenGl() ? "gl" : "cpu";
   std::string format = "auto";
-  std::uint64_t samples = 4, columns = 4, tiles = 0;
+  std::string arrival = "wait", on_damage = "stop";
+  std::uint64_t samples = 4, columns = 4, tiles = 0, gpu_memory = 0, io_threads = 1;
   double orbit_degrees = 0, fps = 25;
 };
 
@@ -56,7 +59,7 @@ std::vector<host::PictureTime> timesOf(const Options& options, std::span<const s
     times = {unwrap(parseTime(options.at, table))};
   } else {
     const std::string all = "0f:" + std::to_string(table.size() - 1) + "f:1f";
-    times = unwrap(parseTimes(options.times.empty() ? all : options.times, table));
+    times = unwrap(parseTimeList(options.times.empty() ? all : options.times, table));
   }
   std::vector<host::PictureTime> pictures;
   for (const SliceTime& time : times) {
@@ -105,6 +108,10 @@ void checkNumbers(const Options& options) {
   if (!std::isfinite(options.fps) || options.fps <= 0) {
     throw Error(FaultCode::kUsage, "", "--fps", "expected a finite number above 0", "give --fps 25");
   }
+  if (options.io_threads < 1 || options.io_threads > kMostIoThreads) {
+    throw Error(FaultCode::kUsage, "", "--io-threads", "expected 1 to " + std::to_string(kMostIoThreads),
+                "leave it out");
+  }
 }
 
 // Before any work: no output replaces an input, another output or, unless forced, an older file.
@@ -140,6 +147,53 @@ void writeText(const std::string& path, const std::string& text, bool force) {
   unwrap(host::writeFile(path, std::as_bytes(std::span(text)), force));
 }
 
+// The films' pages, one pager a file.
+class Pagers {
+ public:
+  // frame_bytes: of the fullest picture's pages, reserved; kept_bytes: what may be held beyond them.
+  Pagers(cli::Session& session, const Options& options, const host::Film& film, std::uint64_t frame_bytes,
+         std::uint64_t kept_bytes) {
+    // Several files share the room; each holds its own part of a picture's pages whatever its budget.
+    const std::size_t files = film.files.size();
+    const std::uint64_t budget = kept_bytes / files + (files == 1 ? frame_bytes : 0);
+    const auto threads = static_cast<unsigned>(session.executor().threads());
+    for (const scene::SceneFile& file : film.files) {
+      owners_.push_back(std::make_unique<stream::Pager>(
+          *file.file,
+          stream::PagerOptions{budget, static_cast<unsigned>(options.io_threads), std::max(threads / 2, 1u)}));
+      pagers_.push_back(owners_.back().get());
+    }
+  }
+  std::span<stream::Pager* const> all() const { return pagers_; }
+
+  // Files that changed, always; pages that were left out, if they were to be.
+  void report(cli::Session& session, bool with_pages) const {
+    for (stream::Pager* pager : pagers_) {
+      for (const Fault& fault : pager->takeFaults()) {
+        if (!fault.place.empty() && !with_pages) continue;
+        session.warn(fault.file + ": " + (fault.place.empty() ? "" : fault.place + ": ") + fault.what + ": " +
+                     (fault.place.empty() ? fault.remedy : "left out"));
+      }
+    }
+  }
+  void count(cli::Session& session) const {
+    stream::Pager::Totals sum;
+    for (const stream::Pager* pager : pagers_) {
+      const stream::Pager::Totals totals = pager->totals();
+      sum.read += totals.read;
+      sum.unused += totals.unused;
+      sum.peak += totals.peak;
+    }
+    session.stats().count("page_bytes_read", sum.read);
+    session.stats().count("page_bytes_unused", sum.unused);
+    session.stats().count("page_bytes_peak", sum.peak);
+  }
+
+ private:
+  std::vector<std::unique_ptr<stream::Pager>> owners_;
+  std::vector<stream::Pager*> pagers_;
+};
+
 void drawAll(cli::Session& session, const Options& options, host::Film& film) {
   const cli::CommonOptions& common = session.options();
   unwrap(render::sampleGrid(film.format));
@@ -152,23 +206,24 @@ void drawAll(cli::Session& session, const Options& options, host::Film& film) {
   const auto tiles = memory.reserve(plan.sheet, "the contact sheet");
   const auto normals = memory.reserve(plan.normals, "summing normals (--flat does without)");
   const auto pages = memory.reserve(plan.frame_pages, "the pages of one picture");
-  // What is left keeps pages of earlier pictures, and half of it holds the triangles of a picture drawn in plain C++.
-  const std::uint64_t budget_bytes = memory.available() / 2;
-  film.triangle_bytes = budget_bytes;
+  // Half of what is left holds the triangles of a picture in plain C++, or the driver's copies; the other half keeps
+  // pages of earlier pictures and of those to come.
+  const std::uint64_t half = memory.available() / 2, usual = common.memory_bytes != 0 ? half : host::usualPageBytes();
+  film.triangle_bytes = half;
+  const std::uint64_t gpu_bytes = std::min(half, options.gpu_memory != 0 ? options.gpu_memory : usual);
   auto renderer = unwrap(
-      host::makeOffscreenRenderer(options.renderer, static_cast<unsigned>(session.executor().threads()), budget_bytes));
+      host::makeOffscreenRenderer(options.renderer, static_cast<unsigned>(session.executor().threads()), gpu_bytes));
   const std::unique_ptr<host::FrameSink> sink = sinkOf(options, common, film.times.size());
-  std::vector<std::unique_ptr<stream::PageSource>> owners;
-  std::vector<stream::PageSource*> sources;
-  for (const scene::SceneFile& file : film.files) {
-    owners.push_back(std::make_unique<stream::PageSource>(*file.file, budget_bytes / film.files.size()));
-    sources.push_back(owners.back().get());
-  }
+  const Pagers pagers(session, options, film, plan.frame_pages / plan.copies, std::min(half, usual));
   session.progress().phase("draw", film.times.size());
-  unwrap(host::play(film, sources, *renderer, sink.get(), sheet ? &*sheet : nullptr, [&](const host::FrameCost& cost) {
-    session.stats().frame({film.times[cost.index].time, cost.ms, cost.drawn, cost.processed, cost.bytes_touched});
-    session.progress().step(cost.index + 1);
-  }));
+  unwrap(
+      host::play(film, pagers.all(), *renderer, sink.get(), sheet ? &*sheet : nullptr, [&](const host::FrameCost& c) {
+        session.stats().frame({film.times[c.index].time, c.ms, c.drawn, c.processed, c.bytes_touched, c.prefetched,
+                               c.absent, c.load_ms, c.choose_ms, c.draw_ms});
+        pagers.report(session, film.skip_damaged);
+        session.progress().step(c.index + 1);
+      }));
+  pagers.count(session);
   if (sheet) {
     const std::vector<std::byte> png = unwrap(host::encodePng(sheet->compose(), options.contact_sheet));
     unwrap(host::writeFile(options.contact_sheet, png, common.force));
@@ -204,6 +259,9 @@ int play(cli::Session& session, const Options& options) {
   film.format = {options.size[0], options.size[1], static_cast<std::uint32_t>(options.samples)};
   film.smooth = !options.flat;
   film.orbit_degrees = options.orbit_degrees;
+  film.arrival = options.arrival == "wait" ? host::Arrival::kWait : host::Arrival::kDraw;
+  film.fps = options.fps;
+  film.skip_damaged = options.on_damage == "skip";
   session.stats().expectFrames();
   session.stats().count("triangles", triangles);
   session.stats().count("frames", draws ? film.times.size() : 0);
@@ -228,7 +286,10 @@ int main(int argc, char** argv) {
       .flag("--offscreen", "draw into files, without a display", &o.offscreen)
       .option("--size", "WxH", "of a picture, pixels", cli::Extent{&o.size})
       .option("--at", "T", "one picture at world time T, or at frame number T with the suffix f", &o.at)
-      .option("--times", "A:B:STEP", "pictures from A to B, both included; default: every frame of the file", &o.times)
+      .option("--times", "A:B:STEP",
+              "pictures from A to B, both included; A >= B with STEP < 0 runs backward; T,A:B:STEP,… jumps; default: "
+              "every frame of the file",
+              &o.times)
       .option("--renderer", "WHICH", "OpenGL, or plain C++", cli::Choice{&o.renderer, {"gl", "cpu"}})
       .option("--samples", "N", "samples a pixel: 1, 4, 9 or 16", &o.samples)
       .flag("--flat", "one normal a triangle instead of smooth ones", &o.flat)
@@ -243,6 +304,15 @@ int main(int argc, char** argv) {
       .option("--contact-sheet", "FILE", "all pictures in one PNG, scaled down", &o.contact_sheet, cli::kIsOutput)
       .option("--columns", "N", "of the contact sheet", &o.columns)
       .option("--tiles", "N", "most pictures on the contact sheet, taken evenly; 0: all", &o.tiles)
+      .heading("Pages")
+      .option("--arrival", "WHAT", "wait for a picture's pages; or draw, at --fps, what has come, as a window does",
+              cli::Choice{&o.arrival, {"wait", "draw"}})
+      .option("--on-damage", "WHAT", "a page that fails its checks ends the film, or is named and left out",
+              cli::Choice{&o.on_damage, {"stop", "skip"}})
+      .option("--gpu-memory", "SIZE", "of copies of pages in the driver; default: half of what --memory leaves",
+              cli::Size{&o.gpu_memory}, cli::kKeepsResult)
+      .option("--io-threads", "N", "that read each file; half of --threads check and decode", &o.io_threads,
+              cli::kKeepsResult)
       .heading("General")
       .common({cli::kOutput, cli::kThreads, cli::kMemory, cli::kForce, cli::kStats, cli::kDepfile});
   return cli::run(argc, argv, command, [&](cli::Session& session) { return play(session, o); });

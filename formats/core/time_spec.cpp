@@ -63,22 +63,9 @@ Fault noTime(std::string_view text) {
   return usage(text, "is no time", "write a world time (0.35), a frame (12.5f) or a range (A:B:STEP)");
 }
 
-}  // namespace
-
-Result<SliceTime> parseTime(std::string_view text, std::span<const double> times) {
-  const auto value = readValue(text);
-  if (!value) return noTime(text);
-  if (const Status status = checkRange(text, *value, times); !status.ok()) return status.fault();
-  return sliceTimeOf(*value, times);
-}
-
-Result<std::vector<SliceTime>> parseTimes(std::string_view text, std::span<const double> times) {
+// The times of "A:B:STEP". may_run_backward: STEP < 0 and A >= B are legal.
+Result<std::vector<SliceTime>> parseRange(std::string_view text, std::span<const double> times, bool may_run_backward) {
   const std::size_t first_colon = text.find(':');
-  if (first_colon == std::string_view::npos) {
-    auto single = parseTime(text, times);
-    if (!single.ok()) return single.fault();
-    return std::vector<SliceTime>{single.value()};
-  }
   const std::size_t second_colon = text.find(':', first_colon + 1);
   if (second_colon == std::string_view::npos) return noTime(text);
   const auto begin = readValue(text.substr(0, first_colon));
@@ -88,8 +75,12 @@ Result<std::vector<SliceTime>> parseTimes(std::string_view text, std::span<const
   if (begin->is_frame != end->is_frame || (step->is_frame && !begin->is_frame)) {
     return usage(text, "mixes frames and world times", "write the f behind both ends, or behind none");
   }
-  if (!(step->number > 0) || end->number < begin->number) {
-    return usage(text, "the step must be over 0 and the end not before the beginning", "write A:B:STEP with A <= B");
+  const bool runs_backward = may_run_backward && step->number < 0;
+  const double sign = runs_backward ? -1 : 1;
+  if (!(sign * step->number > 0) || sign * (end->number - begin->number) < 0) {
+    return usage(
+        text, "the step must be over 0 and the end not before the beginning",
+        may_run_backward ? "write A:B:STEP with A <= B, or A >= B and STEP < 0" : "write A:B:STEP with A <= B");
   }
   for (const Value& value : {*begin, *end}) {
     if (const Status status = checkRange(text, value, times); !status.ok()) return status.fault();
@@ -102,10 +93,41 @@ Result<std::vector<SliceTime>> parseTimes(std::string_view text, std::span<const
   for (std::size_t k = 0; k <= static_cast<std::size_t>(steps); ++k) {
     const double number = begin->number + static_cast<double>(k) * step->number;
     // The sum may miss the end by a rounding; what the user wrote is meant.
-    const bool is_end = std::abs(number - end->number) <= 1e-9 * step->number;
+    const bool is_end = std::abs(number - end->number) <= 1e-9 * std::abs(step->number);
     result.push_back(sliceTimeOf({is_end ? end->number : number, begin->is_frame}, times));
   }
   return result;
+}
+
+}  // namespace
+
+Result<SliceTime> parseTime(std::string_view text, std::span<const double> times) {
+  const auto value = readValue(text);
+  if (!value) return noTime(text);
+  if (const Status status = checkRange(text, *value, times); !status.ok()) return status.fault();
+  return sliceTimeOf(*value, times);
+}
+
+Result<std::vector<SliceTime>> parseTimes(std::string_view text, std::span<const double> times) {
+  if (text.find(':') != std::string_view::npos) return parseRange(text, times, false);
+  auto single = parseTime(text, times);
+  if (!single.ok()) return single.fault();
+  return std::vector<SliceTime>{single.value()};
+}
+
+Result<std::vector<SliceTime>> parseTimeList(std::string_view text, std::span<const double> times) {
+  std::vector<SliceTime> all;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    const std::string_view part = text.substr(begin, comma - begin);
+    auto some = part.find(':') != std::string_view::npos ? parseRange(part, times, true) : parseTimes(part, times);
+    if (!some.ok()) return some.fault();
+    all.insert(all.end(), some.value().begin(), some.value().end());
+    if (all.size() > kMaxTimes)
+      return usage(text, "holds over " + std::to_string(kMaxTimes) + " times", "choose fewer");
+    begin = comma + 1;
+  }
+  return all;
 }
 
 }  // namespace tet4d

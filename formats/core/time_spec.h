@@ -28,4 +28,8 @@ Result<SliceTime> parseTime(std::string_view text, std::span<const double> times
 // and B are of one kind (both with f or both without); STEP may leave the f out. STEP > 0, A <= B.
 Result<std::vector<SliceTime>> parseTimes(std::string_view text, std::span<const double> times);
 
+// Times in any order, for programs that jump: a list "T,A:B:STEP,…" of what parseTimes() takes; a range may also run
+// backward, with A >= B and STEP < 0. At most kMaxTimes in all.
+Result<std::vector<SliceTime>> parseTimeList(std::string_view text, std::span<const double> times);
+
 }  // namespace tet4d

@@ -1,8 +1,12 @@
 #include "player/host/memory_plan.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 
 #include "player/host/png.h"
+#include "player/stream/page_buffer.h"
 
 namespace tet4d::host {
 namespace {
@@ -14,7 +18,21 @@ constexpr std::uint64_t kPictureBytes = 4;
 // A texel of summed normals, and how many a row has.
 constexpr std::uint64_t kTexelBytes = 16, kRowTexels = 4096;
 
+std::uint64_t heldBytes(const paged::PageEntry& entry) {
+  const bool is_raw = entry.codec == static_cast<std::uint32_t>(paged::Codec::kRaw);
+  return stream::PageBuffer::cost(entry.raw_bytes) + (is_raw ? 0 : stream::PageBuffer::cost(entry.bytes));
+}
+
 }  // namespace
+
+std::uint64_t usualPageBytes() {
+  const auto pages = static_cast<std::uint64_t>(std::max(sysconf(_SC_PHYS_PAGES), 0L));
+  const auto page_bytes = static_cast<std::uint64_t>(std::max(sysconf(_SC_PAGESIZE), 0L));
+  const std::uint64_t usual = pages * page_bytes / 4;
+  rlimit limit{};
+  const bool is_limited = getrlimit(RLIMIT_DATA, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return is_limited ? std::min<std::uint64_t>(usual, limit.rlim_cur / 2) : usual;
+}
 
 MemoryPlan planMemory(const Film& film, const ContactSheet* sheet, bool is_gl) {
   MemoryPlan plan;
@@ -32,7 +50,7 @@ MemoryPlan planMemory(const Film& film, const ContactSheet* sheet, bool is_gl) {
       const dyntri::File& file = *film.files[surface.source].file;
       const auto entries = file.pages().entries();
       for (const std::size_t page : scene::choosePages(entries, *t, file.header().last_time, list, surface)) {
-        bytes += plan.copies * entries[page].raw_bytes;
+        bytes += plan.copies * heldBytes(entries[page]);
         const std::uint64_t rows = (entries[page].counts[0] + entries[page].counts[1] + kRowTexels - 1) / kRowTexels;
         if (is_gl && film.smooth) plan.normals = std::max(plan.normals, rows * kRowTexels * kTexelBytes);
       }

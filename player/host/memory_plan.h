@@ -7,7 +7,8 @@
 
 namespace tet4d::host {
 
-// Bytes. Libraries and the driver's own needs are not in it; mapped input is counted as if it were decoded.
+// Bytes. Libraries and the driver's own needs are not in it; pages are counted decoded, compressed ones with what is
+// read.
 struct MemoryPlan {
   std::uint64_t pictures = 0;     // framebuffers of all samples, the picture, its encoding
   std::uint64_t normals = 0;      // gl, smooth: the texture that gathers normals, for the largest page
@@ -18,5 +19,9 @@ struct MemoryPlan {
 
 // `sheet` may be null. `film` as play() takes it, its format proved by render::sampleGrid(). O(pictures * pages).
 MemoryPlan planMemory(const Film& film, const ContactSheet* sheet, bool is_gl);
+
+// What to keep of pages when nobody says: a quarter of the machine's memory, no more than half of what the process may
+// have (prlimit --data).
+std::uint64_t usualPageBytes();
 
 }  // namespace tet4d::host

@@ -1,9 +1,13 @@
 #include "player/host/playback.h"
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
+
+#include "player/host/foresight.h"
 
 namespace tet4d::host {
 namespace {
@@ -21,35 +25,63 @@ Status checkTriangles(const scene::DrawList& list, std::uint64_t most_bytes, con
                "give more --memory, by twice the difference"};
 }
 
-// The pages of one surface at its time, brought in.
-Status loadSurface(const dyntri::File& file, const scene::DrawList& list, scene::DrawSurface& surface, float t,
-                   stream::PageSource& source) {
-  const float last_t = file.header().last_time;
-  const std::vector<std::size_t> pages = scene::choosePages(file.pages().entries(), t, last_t, list, surface);
-  for (const std::size_t page : pages) {
-    if (Status status = source.load(page); !status.ok()) return status;
+using Clock = std::chrono::steady_clock;
+
+double msSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Asks for the pages of the picture and of those to come; waits for the picture's unless the film draws what is there.
+Status load(const Film& film, const Foresight& foresight, const Foresight::Picture& picture,
+            std::span<stream::Pager* const> pagers) {
+  for (std::size_t file = 0; file < pagers.size(); ++file) {
+    pagers[file]->beginFrame();
+    pagers[file]->want(foresight.wants(file));
   }
-  scene::chooseTriangles(source, pages, t, last_t, surface);
+  for (std::size_t file = 0; file < pagers.size(); ++file) {
+    if (film.arrival == Arrival::kWait) pagers[file]->waitFor(picture.pages[file]);
+    for (const std::size_t page : picture.pages[file]) {
+      const Fault* fault = pagers[file]->faultOf(page);
+      // Memory that is not there is no damage: without it the film cannot be what was asked for.
+      if (fault != nullptr && (!film.skip_damaged || fault->code == FaultCode::kOutOfMemory)) return *fault;
+    }
+  }
   return {};
 }
 
-// One picture: scene says which pages, stream brings them, scene says which triangles, render draws.
-Result<render::Image> drawFrame(const Film& film, const PictureTime& when, scene::DrawList& list,
-                                std::span<stream::PageSource* const> sources, render::Renderer& renderer) {
-  for (stream::PageSource* source : sources) {
-    source->beginFrame();
-    source->evict();  // what is kept of earlier frames fits the budget before this frame's pages come on top
-  }
+void choose(const Film& film, const PictureTime& when, const Foresight::Picture& picture,
+            std::span<stream::Pager* const> pagers, scene::DrawList& list) {
   for (scene::DrawSurface& surface : list.surfaces) {
-    const std::size_t i = surface.source;
-    if (!film.files[i].shown || !when.frames[i]) continue;
-    if (Status status = loadSurface(*film.files[i].file, list, surface, *when.frames[i], *sources[i]); !status.ok())
-      return status.fault();
+    const std::size_t file = surface.source;
+    if (!film.files[file].shown || !when.frames[file]) continue;
+    scene::chooseTriangles(*pagers[file], picture.pages[file], *when.frames[file],
+                           film.files[file].file->header().last_time, surface);
   }
+}
+
+// One picture: scene says which pages, stream brings them, scene says which triangles, render draws.
+Result<render::Image> drawFrame(const Film& film, std::size_t i, Foresight& foresight,
+                                std::span<stream::Pager* const> pagers, render::Renderer& renderer, FrameCost& cost) {
+  const Clock::time_point start = Clock::now();
+  const Foresight::Picture& picture = foresight.advance(i);
+  const double camera_ms = msSince(start);
+  if (Status status = load(film, foresight, picture, pagers); !status.ok()) return status.fault();
+  cost.load_ms = msSince(start) - camera_ms;
+  scene::DrawList list = picture.list;
+  choose(film, film.times[i], picture, pagers, list);
   if (Status status = checkTriangles(list, film.triangle_bytes, renderer); !status.ok()) return status.fault();
-  const std::vector<const stream::Residency*> resident(sources.begin(), sources.end());
+  cost.choose_ms = msSince(start) - cost.load_ms;
+  const std::vector<const stream::Residency*> resident(pagers.begin(), pagers.end());
   auto image = renderer.draw(list, resident);
-  for (stream::PageSource* source : sources) source->evict();
+  cost.ms = msSince(start);
+  cost.draw_ms = cost.ms - cost.choose_ms - cost.load_ms;
+  cost.drawn = list.drawn();
+  cost.processed = list.processed();
+  cost.absent = list.absent();
+  for (const stream::Pager* pager : pagers) {
+    cost.bytes_touched += pager->frameReads().touched;
+    cost.prefetched += pager->frameReads().prefetched;
+  }
   return image;
 }
 
@@ -68,22 +100,25 @@ PictureTime pictureTime(std::span<const scene::SceneFile> files, double time) {
   return when;
 }
 
-Status play(const Film& film, std::span<stream::PageSource* const> sources, render::Renderer& renderer, FrameSink* sink,
+Status play(const Film& film, std::span<stream::Pager* const> pagers, render::Renderer& renderer, FrameSink* sink,
             ContactSheet* sheet, const std::function<void(const FrameCost&)>& after) {
-  using Clock = std::chrono::steady_clock;
+  Foresight foresight(film);
+  Clock::time_point due = Clock::now();
   for (std::size_t i = 0; i < film.times.size(); ++i) {
-    const Clock::time_point start = Clock::now();
-    scene::DrawList list = scene::makeDrawList(film.files, shotOfFrame(film, i), film.format, film.smooth);
-    const auto image = drawFrame(film, film.times[i], list, sources, renderer);
+    if (film.arrival == Arrival::kDraw) {
+      std::this_thread::sleep_until(due);
+      due = std::max(due, Clock::now()) +
+            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / film.fps));
+    }
+    FrameCost cost{};
+    cost.index = i;
+    const auto image = drawFrame(film, i, foresight, pagers, renderer, cost);
     if (!image.ok()) return image.fault();
-    const double ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     if (sink != nullptr) {
       if (Status status = sink->add(image.value()); !status.ok()) return status;
     }
     if (sheet != nullptr) sheet->add(image.value());
-    std::uint64_t touched = 0;
-    for (const stream::PageSource* source : sources) touched += source->bytesTouched();
-    after({i, ms, list.drawn(), list.processed(), touched});
+    after(cost);
   }
   return sink != nullptr ? sink->finish() : Status{};
 }

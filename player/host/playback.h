@@ -13,7 +13,7 @@
 #include "player/render/renderer.h"
 #include "player/scene/dyntri_chooser.h"
 #include "player/scene/scene_files.h"
-#include "player/stream/page_source.h"
+#include "player/stream/pager.h"
 
 namespace tet4d::host {
 
@@ -26,6 +26,10 @@ struct PictureTime {
 // The same world time in every file.
 PictureTime pictureTime(std::span<const scene::SceneFile> files, double time);
 
+// When a picture's pages have not come yet: wait for them, for an exact film; or draw at the film's pace what is there,
+// as a window does.
+enum class Arrival { kWait, kDraw };
+
 struct Film {
   std::vector<scene::SceneFile> files;
   scene::Shot shot;
@@ -35,6 +39,9 @@ struct Film {
   std::vector<PictureTime> times;  // one picture each
   // Most bytes the plain C++ renderer may take for the triangles of one picture; without effect on gl.
   std::uint64_t triangle_bytes = std::numeric_limits<std::uint64_t>::max();
+  Arrival arrival = Arrival::kWait;
+  double fps = 25;            // the pace of kDraw; a late picture delays those after it
+  bool skip_damaged = false;  // a page that cannot come in is left out; otherwise it ends the film
 };
 
 // The shot of picture i: the film's, turned.
@@ -44,14 +51,21 @@ scene::Shot shotOfFrame(const Film& film, std::size_t i);
 struct FrameCost {
   std::size_t index;  // of the film's times
   double ms;          // to bring pages in, choose, draw and read the picture back; not to encode it
-  std::uint64_t drawn, processed, bytes_touched;
+  double load_ms;     // of it: asking and waiting for pages
+  double choose_ms;   // of it: camera and triangles
+  double draw_ms;     // of it: drawing and reading back
+  std::uint64_t drawn, processed;
+  std::uint64_t absent;         // pages that should be drawn and were not there
+  std::uint64_t bytes_touched;  // stored bytes of pages used for the first time since they were read
+  std::uint64_t prefetched;     // of them, what had come before
 };
 
 // Draws all frames in order into `sink` and `sheet`, either of which may be null. `after` is called after each frame
 // and may throw to stop; nothing is left under a final name then but finished pictures. The first Fault ends it;
-// kOutOfMemory if the triangles of a picture exceed film.triangle_bytes.
-// sources: one a file.
-Status play(const Film& film, std::span<stream::PageSource* const> sources, render::Renderer& renderer, FrameSink* sink,
+// kOutOfMemory if the triangles of a picture exceed film.triangle_bytes. With Arrival::kWait the pictures depend on
+// nothing but the film.
+// pagers: one a file. Faults of pages that were skipped stay in them (Pager::takeFaults()).
+Status play(const Film& film, std::span<stream::Pager* const> pagers, render::Renderer& renderer, FrameSink* sink,
             ContactSheet* sheet, const std::function<void(const FrameCost&)>& after);
 
 }  // namespace tet4d::host

@@ -6,9 +6,7 @@
 #include "formats/core/tet_slice.h"
 
 namespace tet4d::scene {
-namespace {
 
-// True if one plane of the view has the whole box behind it. Conservative: a box near a corner of the view may stay.
 bool isOutside(const Bounds4f& box, const DrawList& camera, const DrawSurface& surface) {
   std::array<bool, 6> all_behind;
   all_behind.fill(true);
@@ -26,15 +24,16 @@ bool isOutside(const Bounds4f& box, const DrawList& camera, const DrawSurface& s
   return std::any_of(all_behind.begin(), all_behind.end(), [](bool behind) { return behind; });
 }
 
-}  // namespace
+bool isAlivePage(const paged::PageEntry& entry, float t, float last_t) {
+  return entry.counts[2] != 0 && isAlive(entry.bounds.min.t, entry.bounds.max.t, t, last_t);
+}
 
 std::vector<std::size_t> choosePages(std::span<const paged::PageEntry> entries, float t, float last_t,
                                      const DrawList& camera, const DrawSurface& surface) {
   std::vector<std::size_t> chosen;
   for (std::size_t page = 0; page < entries.size(); ++page) {
     const paged::PageEntry& entry = entries[page];
-    if (entry.counts[2] == 0 || !isAlive(entry.bounds.min.t, entry.bounds.max.t, t, last_t)) continue;
-    if (!isOutside(entry.bounds, camera, surface)) chosen.push_back(page);
+    if (isAlivePage(entry, t, last_t) && !isOutside(entry.bounds, camera, surface)) chosen.push_back(page);
   }
   return chosen;
 }

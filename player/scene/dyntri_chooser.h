@@ -14,6 +14,12 @@
 
 namespace tet4d::scene {
 
+// True if one plane of the view has the whole box behind it. Conservative: a box near a corner of the view may stay.
+bool isOutside(const Bounds4f& box, const DrawList& camera, const DrawSurface& surface);
+
+// True if the page has triangles and its interval holds t.
+bool isAlivePage(const paged::PageEntry& entry, float t, float last_t);
+
 // The pages to bring in and draw at time t (frames): their interval holds t — half-open, closed at last_t — they have
 // triangles, and their box is not outside the view. In page order. `surface`: the file's, of the list `camera`.
 // O(pages).

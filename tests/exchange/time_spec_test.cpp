@@ -76,5 +76,22 @@ TEST(TimeSpec, OneFrameHasOneTime) {
   EXPECT_FALSE(parseTime("4.1", times).ok());
 }
 
+std::vector<double> framesOf(const char* text) {
+  std::vector<double> frames;
+  const auto times = parseTimeList(text, kTimes);
+  if (!times.ok()) return frames;
+  for (const SliceTime& time : times.value()) frames.push_back(time.frame);
+  return frames;
+}
+
+TEST(TimeSpec, ListsRunForwardBackwardAndJump) {
+  EXPECT_EQ(framesOf("2f"), (std::vector<double>{2}));
+  EXPECT_EQ(framesOf("2f:0f:-1f"), (std::vector<double>{2, 1, 0}));
+  EXPECT_EQ(framesOf("0f:1f:0.5f,3f,12,2f:1f:-0.4f"), (std::vector<double>{0, 0.5, 1, 3, 1.5, 2, 1.6, 1.2}));
+  EXPECT_EQ(framesOf("1f:1f:-1f"), (std::vector<double>{1}));
+  for (const char* text : {"", ",", "1f,", "0f:2f:-1f", "2f:0f:1f", "2f:0f:0f", "1f,9f", "3f:0f:-1e-9f"})
+    EXPECT_FALSE(parseTimeList(text, kTimes).ok()) << text;
+}
+
 }  // namespace
 }  // namespace tet4d

@@ -195,8 +195,8 @@ TEST_F(Film, PlaysWithCostsAndOrbit) {
   const scene::WorldBox box = scene::worldBox(file.value().header().index_to_world, file.value().header().bounds);
   host::Film film{{{&file.value(), std::nullopt, true}}, scene::defaultShot(box, 1.6), {160, 100, 1}, true, 90, {}};
   for (const double time : {0.0, 0.5, 1.0, 3.0}) film.times.push_back(pictureTime(film.files, time));
-  stream::PageSource source(file.value(), 1u << 30);
-  const std::array<stream::PageSource*, 1> sources{&source};
+  stream::Pager source(file.value(), {});
+  const std::array<stream::Pager*, 1> sources{&source};
   auto renderer = makeOffscreenRenderer("cpu", 1, 0);
   auto sink = makePngFrames(in("f%d.png"), film.times.size(), false);
   ContactSheet sheet(2, film.times.size(), 0);

@@ -155,7 +155,12 @@ ordered_json framesJson(const Stats& stats) {
                       {"ms", frame.ms},
                       {"drawn", frame.drawn},
                       {"processed", frame.processed},
-                      {"bytes_touched", frame.bytes_touched}});
+                      {"bytes_touched", frame.bytes_touched},
+                      {"prefetched", frame.prefetched},
+                      {"absent", frame.absent},
+                      {"load_ms", frame.load_ms},
+                      {"choose_ms", frame.choose_ms},
+                      {"draw_ms", frame.draw_ms}});
   }
   return frames;
 }

@@ -44,7 +44,10 @@ class Stats {
     double ms = 0;                    // to draw it
     std::uint64_t drawn = 0;          // triangles alive at `time`
     std::uint64_t processed = 0;      // triangles given to the GPU or the slicer
-    std::uint64_t bytes_touched = 0;  // read from the file for it
+    std::uint64_t bytes_touched = 0;  // stored bytes of pages used for the first time since they were read
+    std::uint64_t prefetched = 0;     // of them, what had come before it was needed
+    std::uint64_t absent = 0;         // pages that should be drawn and were not there
+    double load_ms = 0, choose_ms = 0, draw_ms = 0;  // parts of ms: pages, triangles, drawing and reading back
   };
   // Counts are named by what they count: vertices, tets, triangles, patches, nodes, leaves, points, voxels, frames.
   void count(const std::string& name, std::uint64_t value);
