@@ -1,5 +1,7 @@
 // Writes the files that the cases of tet4d-play.py run on into the directory named by the first argument.
 #include <filesystem>
+#include <fstream>
+#include <vector>
 
 #include "formats/hypermesh.h"
 #include "tests/player/swept_mesh.h"
@@ -25,6 +27,16 @@ void writeHypermesh(const std::string& path) {
   if (const Status closed = writer.value().close("{}"); !closed.ok()) throw std::runtime_error(closed.fault().what);
 }
 
+// Changes one bit of a page.
+void damage(const std::string& path, std::size_t page) {
+  const std::uint64_t offset = dyntri::File::open(path).value().pages().entries()[page].offset + 300;
+  std::fstream bytes(path, std::ios::in | std::ios::out | std::ios::binary);
+  bytes.seekg(static_cast<std::streamoff>(offset));
+  const int old = bytes.get();
+  bytes.seekp(static_cast<std::streamoff>(offset));
+  bytes.put(static_cast<char>(old ^ 1));
+}
+
 }  // namespace
 
 int main(int, char** argv) {
@@ -36,6 +48,20 @@ int main(int, char** argv) {
   write(directory + "/sphere.t4d", {test::sweep(ball, motion, 0, 1), test::sweep(ball, motion, 1, 2)},
         {{}, {10, 10.5, 12}, paged::Codec::kRaw});
   write(directory + "/empty.t4d", {}, {{}, {0, 1}, paged::Codec::kRaw});
+  // Forty pages, the same compressed if this build can; the first ten of them with one damaged.
+  std::vector<test::Page> many;
+  std::vector<double> times{0};
+  for (int k = 0; k < 40; ++k) {
+    many.push_back(test::sweep(ball, motion, k, k + 1));
+    times.push_back(k + 1);
+  }
+  write(directory + "/many.t4d", many, {{}, times, paged::Codec::kRaw});
+  const bool has_zstd = paged::hasCodec(paged::Codec::kZstd);
+  write(directory + "/packed.t4d", many, {{}, times, has_zstd ? paged::Codec::kZstd : paged::Codec::kRaw});
+  many.resize(10);
+  times.resize(11);
+  write(directory + "/damaged.t4d", many, {{}, times, paged::Codec::kRaw});
+  damage(directory + "/damaged.t4d", 4);
   writeHypermesh(directory + "/mesh.t4h");
   return 0;
 }

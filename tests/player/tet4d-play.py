@@ -49,7 +49,51 @@ def check_y4m(result):
     assert len(rest) == 3 * (6 + 64 * 48 * 3 // 2), len(rest)
 
 
+def check_films(result):
+    films = sorted(result.directory.glob("*.y4m"))
+    assert len(films) > 1 and len({film.read_bytes() for film in films}) == 1, [film.name for film in films]
+    for stats in result.directory.glob("*.json"):
+        told = json.loads(stats.read_text())
+        assert sum(f["absent"] for f in told["frames"]) == 0
+        touched = sum(f["bytes_touched"] for f in told["frames"])
+        assert touched + told["counts"]["page_bytes_unused"] == told["counts"]["page_bytes_read"], told["counts"]
+
+
+def check_skipped(result):
+    frames = json.loads((result.directory / "s.json").read_text())["frames"]
+    assert [f["absent"] for f in frames] == [1 if 4 <= k < 5 else 0 for k in range(11)], frames
+
+
+def check_drawn(result):
+    frames = json.loads((result.directory / "s.json").read_text())["frames"]
+    assert frames[-1]["absent"] == 0 and frames[-1]["drawn"] > 0, frames[-1]
+
+
+FILM = " --offscreen --size 64x48 --renderer cpu --samples 1 --format y4m"
+JUMPS = " --times 0f:40f:0.5f,40f:0f:-1f,7f,22.5f,39f,1f,15f,0f,40f,3f,27f,11f"
+
 CASES = [
+    {"name": "no budget, thread or codec changes a film that runs forward, backward and jumps",
+     "shell": f"tet4d-play {{files}}/many.t4d{FILM}{JUMPS} -o a.y4m --stats a.json;"
+              f" tet4d-play {{files}}/many.t4d{FILM}{JUMPS} -o b.y4m --stats b.json --memory 2300K -j 1;"
+              f" tet4d-play {{files}}/many.t4d{FILM}{JUMPS} -o c.y4m --stats c.json --memory 4M --io-threads 3 -j 4;"
+              f" tet4d-play {{files}}/packed.t4d{FILM}{JUMPS} -o d.y4m --stats d.json --memory 2300K",
+     "check": check_films},
+    {"name": "a damaged page ends a film by name", "run": play("-o", "f%d.png", file="{files}/damaged.t4d"), "exit": 3,
+     "stderr": ["damaged.t4d: page 4: checksum mismatch"], "absent": ["f4.png"]},
+    {"name": "or is named once and left out",
+     "run": play("-o", "f%d.png", "--on-damage", "skip", "--stats", "s.json", file="{files}/damaged.t4d"),
+     "stderr": ["damaged.t4d: page 4: checksum mismatch: left out"], "check": check_skipped},
+    {"name": "films whose damage lies elsewhere play", "run": play("--times", "0f:3f:1f,6f:10f:1f", "-o", "f%d.png", file="{files}/damaged.t4d"),
+     "check": lambda r: is_png(r, "f8.png", 64, 48)},
+    {"name": "what has come is drawn at the film's pace",
+     "run": play("--arrival", "draw", "--fps", "50", "--times", "0f:10f:1f,10f:0f:-2f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f",
+                 "-o", "f%d.png", "--stats", "s.json", file="{files}/many.t4d"),
+     "check": check_drawn},
+    {"name": "io threads", "run": play("--io-threads", "0", "-o", "f%d.png"), "exit": 2, "stderr": ["--io-threads"]},
+    {"name": "a backward range without a sign", "run": play("--times", "2f:0f:1f", "-o", "f%d.png"), "exit": 2, "stderr": ["STEP < 0"]},
+    {"name": "a picture of one pixel", "run": play("--at", "1f", "--size", "1x1", "-o", "f.png", options=["--offscreen", "--renderer", "cpu"]),
+     "check": lambda r: is_png(r, "f.png", 1, 1)},
     {"name": "frames between frames", "run": play("--times", "0f:2f:0.5f", "-o", "frames/%05d.png"), "check": check_frames},
     {"name": "without times every frame of the file", "run": play("-o", "f%d.png"),
      "check": lambda r: names(r) == ["f0.png", "f1.png", "f2.png"] or (_ for _ in ()).throw(AssertionError(names(r)))},
