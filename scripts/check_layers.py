@@ -34,7 +34,9 @@ ALLOWED = {
     "tools": BASE + ["libpreprocess/exchange", "libpreprocess/topology", "libpreprocess/measure",
                      "libpreprocess/hypermesh", "libpreprocess/prisms", "libpreprocess/dyntri", "player/scene", "tools/common"],
     "tools/tet4d-play": FORMATS + ["libpreprocess", "player/stream", "player/scene", "player/render", "player/host",
-                                   "tools/common"],
+                                   "tools/common", "tools/play"],
+    "tools/play": FORMATS + ["libpreprocess", "player/stream", "player/scene", "player/render", "player/host", "tools/common",
+                             "tools"],
     "tests": None,  # sees all
 }
 

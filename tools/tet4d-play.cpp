@@ -19,6 +19,7 @@
 #include "player/host/png.h"
 #include "player/scene/shot_file.h"
 #include "tools/common/cli.h"
+#include "tools/play/pagers.h"
 
 namespace {
 
@@ -36,6 +37,7 @@ struct Options {
   std::string arrival = "wait", on_damage = "stop";
   std::uint64_t samples = 4, columns = 4, tiles = 0, gpu_memory = 0, io_threads = 1;
   double orbit_degrees = 0, fps = 25;
+  std::optional<double> budget_ms;
 };
 
 dyntri::File openInput(const std::string& path) {
@@ -108,6 +110,13 @@ void checkNumbers(const Options& options) {
   if (!std::isfinite(options.fps) || options.fps <= 0) {
     throw Error(FaultCode::kUsage, "", "--fps", "expected a finite number above 0", "give --fps 25");
   }
+  if (options.budget_ms && (std::isnan(*options.budget_ms) || *options.budget_ms < 0)) {
+    throw Error(FaultCode::kUsage, "", "--budget-ms", "expected 0, a number above it or inf", "give --budget-ms 40");
+  }
+  if (options.budget_ms && options.arrival == "wait") {
+    throw Error(FaultCode::kUsage, "", "--budget-ms",
+                "makes pictures depend on the machine, and --arrival wait is exact", "give --arrival draw with it");
+  }
   if (options.io_threads < 1 || options.io_threads > kMostIoThreads) {
     throw Error(FaultCode::kUsage, "", "--io-threads", "expected 1 to " + std::to_string(kMostIoThreads),
                 "leave it out");
@@ -147,53 +156,6 @@ void writeText(const std::string& path, const std::string& text, bool force) {
   unwrap(host::writeFile(path, std::as_bytes(std::span(text)), force));
 }
 
-// The films' pages, one pager a file.
-class Pagers {
- public:
-  // frame_bytes: of the fullest picture's pages, reserved; kept_bytes: what may be held beyond them.
-  Pagers(cli::Session& session, const Options& options, const host::Film& film, std::uint64_t frame_bytes,
-         std::uint64_t kept_bytes) {
-    // Several files share the room; each holds its own part of a picture's pages whatever its budget.
-    const std::size_t files = film.files.size();
-    const std::uint64_t budget = kept_bytes / files + (files == 1 ? frame_bytes : 0);
-    const auto threads = static_cast<unsigned>(session.executor().threads());
-    for (const scene::SceneFile& file : film.files) {
-      owners_.push_back(std::make_unique<stream::Pager>(
-          *file.file,
-          stream::PagerOptions{budget, static_cast<unsigned>(options.io_threads), std::max(threads / 2, 1u)}));
-      pagers_.push_back(owners_.back().get());
-    }
-  }
-  std::span<stream::Pager* const> all() const { return pagers_; }
-
-  // Files that changed, always; pages that were left out, if they were to be.
-  void report(cli::Session& session, bool with_pages) const {
-    for (stream::Pager* pager : pagers_) {
-      for (const Fault& fault : pager->takeFaults()) {
-        if (!fault.place.empty() && !with_pages) continue;
-        session.warn(fault.file + ": " + (fault.place.empty() ? "" : fault.place + ": ") + fault.what + ": " +
-                     (fault.place.empty() ? fault.remedy : "left out"));
-      }
-    }
-  }
-  void count(cli::Session& session) const {
-    stream::Pager::Totals sum;
-    for (const stream::Pager* pager : pagers_) {
-      const stream::Pager::Totals totals = pager->totals();
-      sum.read += totals.read;
-      sum.unused += totals.unused;
-      sum.peak += totals.peak;
-    }
-    session.stats().count("page_bytes_read", sum.read);
-    session.stats().count("page_bytes_unused", sum.unused);
-    session.stats().count("page_bytes_peak", sum.peak);
-  }
-
- private:
-  std::vector<std::unique_ptr<stream::Pager>> owners_;
-  std::vector<stream::Pager*> pagers_;
-};
-
 void drawAll(cli::Session& session, const Options& options, host::Film& film) {
   const cli::CommonOptions& common = session.options();
   unwrap(render::sampleGrid(film.format));
@@ -214,15 +176,21 @@ void drawAll(cli::Session& session, const Options& options, host::Film& film) {
   auto renderer = unwrap(
       host::makeOffscreenRenderer(options.renderer, static_cast<unsigned>(session.executor().threads()), gpu_bytes));
   const std::unique_ptr<host::FrameSink> sink = sinkOf(options, common, film.times.size());
-  const Pagers pagers(session, options, film, plan.frame_pages / plan.copies, std::min(half, usual));
+  const play::Pagers pagers(session, static_cast<unsigned>(options.io_threads), film, plan.frame_pages / plan.copies,
+                            std::min(half, usual));
   session.progress().phase("draw", film.times.size());
-  unwrap(
-      host::play(film, pagers.all(), *renderer, sink.get(), sheet ? &*sheet : nullptr, [&](const host::FrameCost& c) {
-        session.stats().frame({film.times[c.index].time, c.ms, c.drawn, c.processed, c.bytes_touched, c.prefetched,
-                               c.absent, c.load_ms, c.choose_ms, c.draw_ms});
-        pagers.report(session, film.skip_damaged);
-        session.progress().step(c.index + 1);
-      }));
+  host::BudgetReport report;
+  const auto after = [&](const host::FrameCost& c) {
+    session.stats().frame({film.times[c.index].time, c.ms, c.drawn, c.processed, c.bytes_touched, c.prefetched,
+                           c.absent, c.load_ms, c.choose_ms, c.draw_ms, c.samples});
+    pagers.warn(session, film.skip_damaged);
+    session.progress().step(c.index + 1);
+  };
+  unwrap(host::play(film, pagers.all(), *renderer, sink.get(), sheet ? &*sheet : nullptr, after, &report));
+  if (options.budget_ms) {
+    session.stats().error("budget_p95_ms", report.p95_ms);
+    session.stats().error("budget_prediction_p95", report.error_p95);
+  }
   pagers.count(session);
   if (sheet) {
     const std::vector<std::byte> png = unwrap(host::encodePng(sheet->compose(), options.contact_sheet));
@@ -230,7 +198,7 @@ void drawAll(cli::Session& session, const Options& options, host::Film& film) {
   }
 }
 
-int play(cli::Session& session, const Options& options) {
+int playFiles(cli::Session& session, const Options& options) {
   if (!options.offscreen) {
     throw Error(FaultCode::kNotBuilt, "", "", "this build has no window", "give --offscreen and -o frames/%05d.png");
   }
@@ -261,6 +229,7 @@ int play(cli::Session& session, const Options& options) {
   film.orbit_degrees = options.orbit_degrees;
   film.arrival = options.arrival == "wait" ? host::Arrival::kWait : host::Arrival::kDraw;
   film.fps = options.fps;
+  if (options.budget_ms) film.budget_ms = *options.budget_ms;
   film.skip_damaged = options.on_damage == "skip";
   session.stats().expectFrames();
   session.stats().count("triangles", triangles);
@@ -307,6 +276,8 @@ int main(int argc, char** argv) {
       .heading("Pages")
       .option("--arrival", "WHAT", "wait for a picture's pages; or draw, at --fps, what has come, as a window does",
               cli::Choice{&o.arrival, {"wait", "draw"}})
+      .option("--budget-ms", "MS", "with --arrival draw: samples and size of moving pictures give way to keep to it",
+              &o.budget_ms, cli::kMayBeInfinite)
       .option("--on-damage", "WHAT", "a page that fails its checks ends the film, or is named and left out",
               cli::Choice{&o.on_damage, {"stop", "skip"}})
       .option("--gpu-memory", "SIZE", "of copies of pages in the driver; default: half of what --memory leaves",
@@ -315,5 +286,5 @@ int main(int argc, char** argv) {
               cli::kKeepsResult)
       .heading("General")
       .common({cli::kOutput, cli::kThreads, cli::kMemory, cli::kForce, cli::kStats, cli::kDepfile});
-  return cli::run(argc, argv, command, [&](cli::Session& session) { return play(session, o); });
+  return cli::run(argc, argv, command, [&](cli::Session& session) { return playFiles(session, o); });
 }

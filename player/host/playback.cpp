@@ -59,8 +59,44 @@ void choose(const Film& film, const PictureTime& when, const Foresight::Picture&
   }
 }
 
+// What a budget can do before there are levels of detail: the picture's samples and its size.
+class Economy {
+ public:
+  explicit Economy(const Film& film)
+      : film_(&film),
+        budget_(film.budget_ms),
+        quality_(film.format.samples),
+        pixels_(static_cast<double>(film.format.width) * film.format.height) {}
+
+  // The format to draw picture i with, which hands over `primitives`.
+  scene::Format formatOf(std::size_t i, double primitives) {
+    const bool is_moving = i > 0 && (film_->times[i].time != film_->times[i - 1].time || film_->orbit_degrees != 0);
+    const scene::Quality quality = quality_.next(budget_, pixels_, primitives, 0, is_moving);
+    scene::Format format = film_->format;
+    format.samples = quality.samples;
+    format.width = std::max(format.width / quality.divide, 1u);
+    format.height = std::max(format.height / quality.divide, 1u);
+    return format;
+  }
+  void learn(const FrameCost& cost) {
+    const auto bytes = static_cast<double>(cost.bytes_touched);
+    budget_.add({static_cast<double>(cost.processed), bytes, cost.samples * pixels_}, cost.ms);
+  }
+  // Samples a pixel of the film's own size.
+  double samplesOf(const scene::Format& format) const {
+    return static_cast<double>(format.width) * format.height * format.samples / pixels_;
+  }
+  BudgetReport report() const { return budget_.report(); }
+
+ private:
+  const Film* film_;
+  scene::FrameBudget budget_;
+  scene::MotionQuality quality_;
+  double pixels_;
+};
+
 // One picture: scene says which pages, stream brings them, scene says which triangles, render draws.
-Result<render::Image> drawFrame(const Film& film, std::size_t i, Foresight& foresight,
+Result<render::Image> drawFrame(const Film& film, std::size_t i, Foresight& foresight, Economy& economy,
                                 std::span<stream::Pager* const> pagers, render::Renderer& renderer, FrameCost& cost) {
   const Clock::time_point start = Clock::now();
   const Foresight::Picture& picture = foresight.advance(i);
@@ -72,7 +108,11 @@ Result<render::Image> drawFrame(const Film& film, std::size_t i, Foresight& fore
   if (Status status = checkTriangles(list, film.triangle_bytes, renderer); !status.ok()) return status.fault();
   cost.choose_ms = msSince(start) - cost.load_ms;
   const std::vector<const stream::Residency*> resident(pagers.begin(), pagers.end());
+  list.format = economy.formatOf(i, static_cast<double>(list.processed()));
   auto image = renderer.draw(list, resident);
+  if (image.ok() && (list.format.width != film.format.width || list.format.height != film.format.height))
+    image = render::scaleUp(image.value(), film.format.width, film.format.height);
+  cost.samples = economy.samplesOf(list.format);
   cost.ms = msSince(start);
   cost.draw_ms = cost.ms - cost.choose_ms - cost.load_ms;
   cost.drawn = list.drawn();
@@ -82,6 +122,7 @@ Result<render::Image> drawFrame(const Film& film, std::size_t i, Foresight& fore
     cost.bytes_touched += pager->frameReads().touched;
     cost.prefetched += pager->frameReads().prefetched;
   }
+  economy.learn(cost);
   return image;
 }
 
@@ -101,8 +142,9 @@ PictureTime pictureTime(std::span<const scene::SceneFile> files, double time) {
 }
 
 Status play(const Film& film, std::span<stream::Pager* const> pagers, render::Renderer& renderer, FrameSink* sink,
-            ContactSheet* sheet, const std::function<void(const FrameCost&)>& after) {
+            ContactSheet* sheet, const std::function<void(const FrameCost&)>& after, BudgetReport* report) {
   Foresight foresight(film);
+  Economy economy(film);
   Clock::time_point due = Clock::now();
   for (std::size_t i = 0; i < film.times.size(); ++i) {
     if (film.arrival == Arrival::kDraw) {
@@ -112,12 +154,13 @@ Status play(const Film& film, std::span<stream::Pager* const> pagers, render::Re
     }
     FrameCost cost{};
     cost.index = i;
-    const auto image = drawFrame(film, i, foresight, pagers, renderer, cost);
+    const auto image = drawFrame(film, i, foresight, economy, pagers, renderer, cost);
     if (!image.ok()) return image.fault();
     if (sink != nullptr) {
       if (Status status = sink->add(image.value()); !status.ok()) return status;
     }
     if (sheet != nullptr) sheet->add(image.value());
+    if (report != nullptr) *report = economy.report();
     after(cost);
   }
   return sink != nullptr ? sink->finish() : Status{};

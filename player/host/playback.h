@@ -12,6 +12,7 @@
 #include "player/host/film.h"
 #include "player/render/renderer.h"
 #include "player/scene/dyntri_chooser.h"
+#include "player/scene/frame_budget.h"
 #include "player/scene/scene_files.h"
 #include "player/stream/pager.h"
 
@@ -40,7 +41,10 @@ struct Film {
   // Most bytes the plain C++ renderer may take for the triangles of one picture; without effect on gl.
   std::uint64_t triangle_bytes = std::numeric_limits<std::uint64_t>::max();
   Arrival arrival = Arrival::kWait;
-  double fps = 25;            // the pace of kDraw; a late picture delays those after it
+  double fps = 25;  // the pace of kDraw; a late picture delays those after it
+  // Milliseconds a moving picture may take; samples and size give way, and come back at rest. Only with kDraw: such a
+  // film depends on the machine.
+  double budget_ms = std::numeric_limits<double>::infinity();
   bool skip_damaged = false;  // a page that cannot come in is left out; otherwise it ends the film
 };
 
@@ -58,7 +62,11 @@ struct FrameCost {
   std::uint64_t absent;         // pages that should be drawn and were not there
   std::uint64_t bytes_touched;  // stored bytes of pages used for the first time since they were read
   std::uint64_t prefetched;     // of them, what had come before
+  double samples;               // a pixel; below 1 where a picture was drawn smaller and enlarged
 };
+
+// How a film kept to its budget: the last 64 pictures.
+using BudgetReport = scene::FrameBudget::Report;
 
 // Draws all frames in order into `sink` and `sheet`, either of which may be null. `after` is called after each frame
 // and may throw to stop; nothing is left under a final name then but finished pictures. The first Fault ends it;
@@ -66,6 +74,6 @@ struct FrameCost {
 // nothing but the film.
 // pagers: one a file. Faults of pages that were skipped stay in them (Pager::takeFaults()).
 Status play(const Film& film, std::span<stream::Pager* const> pagers, render::Renderer& renderer, FrameSink* sink,
-            ContactSheet* sheet, const std::function<void(const FrameCost&)>& after);
+            ContactSheet* sheet, const std::function<void(const FrameCost&)>& after, BudgetReport* report = nullptr);
 
 }  // namespace tet4d::host

@@ -96,4 +96,15 @@ Image boxFilter(const Image& image, std::uint32_t side) {
   return out;
 }
 
+Image scaleUp(const Image& image, std::uint32_t width, std::uint32_t height) {
+  Image large(width, height);
+  for (std::uint32_t y = 0; y < height; ++y) {
+    const std::uint8_t* from = image.row(static_cast<std::uint32_t>(std::uint64_t{y} * image.height / height));
+    std::uint8_t* to = large.row(y);
+    for (std::uint32_t x = 0; x < width; ++x)
+      std::copy_n(from + 4 * (std::uint64_t{x} * image.width / width), 4, to + std::size_t{4} * x);
+  }
+  return large;
+}
+
 }  // namespace tet4d::render

@@ -27,4 +27,7 @@ Image boxFilter(const Image& image, std::uint32_t side);
 // Scales down to width x height (each at most the image's) by area weights in linear light.
 Image scaleDown(const Image& image, std::uint32_t width, std::uint32_t height);
 
+// Scales up to width x height (each at least the image's) by repeating pixels.
+Image scaleUp(const Image& image, std::uint32_t width, std::uint32_t height);
+
 }  // namespace tet4d::render

@@ -69,6 +69,13 @@ def check_drawn(result):
     assert frames[-1]["absent"] == 0 and frames[-1]["drawn"] > 0, frames[-1]
 
 
+def check_budget(result):
+    samples = [f["samples"] for f in json.loads((result.directory / "s.json").read_text())["frames"]]
+    assert samples[0] == 9 and samples[-2:] == [9, 9] and all(s < 0.1 for s in samples[1:-2]), samples
+    for k in range(11):
+        is_png(result, f"f{k}.png", 63, 47)
+
+
 FILM = " --offscreen --size 64x48 --renderer cpu --samples 1 --format y4m"
 JUMPS = " --times 0f:40f:0.5f,40f:0f:-1f,7f,22.5f,39f,1f,15f,0f,40f,3f,27f,11f"
 
@@ -90,6 +97,13 @@ CASES = [
      "run": play("--arrival", "draw", "--fps", "50", "--times", "0f:10f:1f,10f:0f:-2f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f,4f",
                  "-o", "f%d.png", "--stats", "s.json", file="{files}/many.t4d"),
      "check": check_drawn},
+    {"name": "a budget lowers moving pictures and gives them back at rest",
+     "run": play("--arrival", "draw", "--fps", "200", "--budget-ms", "0", "--times", "1f:9f:1f,9f,9f", "--stats", "s.json",
+                 "-o", "f%d.png", file="{files}/many.t4d", options=["--offscreen", "--renderer", "cpu", "--size", "63x47", "--samples", "9"]),
+     "check": check_budget},
+    {"name": "a budget needs a film that does not wait", "run": play("--budget-ms", "10", "-o", "f%d.png"), "exit": 2,
+     "stderr": ["--budget-ms", "--arrival draw"]},
+    {"name": "a negative budget", "run": play("--budget-ms", "-1", "--arrival", "draw", "-o", "f%d.png"), "exit": 2, "stderr": ["--budget-ms"]},
     {"name": "io threads", "run": play("--io-threads", "0", "-o", "f%d.png"), "exit": 2, "stderr": ["--io-threads"]},
     {"name": "a backward range without a sign", "run": play("--times", "2f:0f:1f", "-o", "f%d.png"), "exit": 2, "stderr": ["STEP < 0"]},
     {"name": "a picture of one pixel", "run": play("--at", "1f", "--size", "1x1", "-o", "f.png", options=["--offscreen", "--renderer", "cpu"]),

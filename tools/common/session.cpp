@@ -160,7 +160,8 @@ ordered_json framesJson(const Stats& stats) {
                       {"absent", frame.absent},
                       {"load_ms", frame.load_ms},
                       {"choose_ms", frame.choose_ms},
-                      {"draw_ms", frame.draw_ms}});
+                      {"draw_ms", frame.draw_ms},
+                      {"samples", frame.samples}});
   }
   return frames;
 }

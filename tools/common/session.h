@@ -48,6 +48,7 @@ class Stats {
     std::uint64_t prefetched = 0;     // of them, what had come before it was needed
     std::uint64_t absent = 0;         // pages that should be drawn and were not there
     double load_ms = 0, choose_ms = 0, draw_ms = 0;  // parts of ms: pages, triangles, drawing and reading back
+    double samples = 0;                              // a pixel
   };
   // Counts are named by what they count: vertices, tets, triangles, patches, nodes, leaves, points, voxels, frames.
   void count(const std::string& name, std::uint64_t value);
