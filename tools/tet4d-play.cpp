@@ -19,6 +19,7 @@
 #include "player/host/png.h"
 #include "player/scene/shot_file.h"
 #include "tools/common/cli.h"
+#include "tools/play/baseline.h"
 #include "tools/play/pagers.h"
 
 namespace {
@@ -45,7 +46,7 @@ dyntri::File openInput(const std::string& path) {
   if (header.payload == hypermesh::kPayload) {
     const std::string output = std::filesystem::path(path).replace_extension(".t4d").string();
     throw Error(FaultCode::kBadInput, path, "", "is a hypermesh, and the player plays dynamic triangles",
-                "run first: dyntri-build " + path + " -o " + output);
+                "run first: dyntri-build " + path + " -o " + output + " (or give --renderer tets)");
   }
   return unwrap(dyntri::File::open(path));
 }
@@ -198,10 +199,34 @@ void drawAll(cli::Session& session, const Options& options, host::Film& film) {
   }
 }
 
+// The paper's baseline.
+int playTets(cli::Session& session, const Options& options) {
+  const cli::CommonOptions& common = session.options();
+  if (options.inputs.size() != 1 || common.output.empty() || !options.contact_sheet.empty() ||
+      options.orbit_degrees != 0) {
+    throw Error(FaultCode::kUsage, "", "--renderer tets", "draws one hypermesh into pictures or a film, without more",
+                "give tet4d-play FILE.t4h --offscreen --renderer tets -o frames/%05d.png");
+  }
+  checkNumbers(options);
+  checkSuffixes(options, common.output);
+  const hypermesh::File file = unwrap(hypermesh::File::open(options.inputs[0]));
+  session.dependsOn(options.inputs[0]);
+  if (!options.camera.empty()) session.dependsOn(options.camera);
+  const std::string all = "0f:" + std::to_string(file.times().size() - 1) + "f:1f";
+  const std::string& asked = !options.at.empty() ? options.at : options.times;
+  const std::vector<SliceTime> times = unwrap(parseTimeList(asked.empty() ? all : asked, file.times()));
+  checkNames(options, common, times.size());
+  const scene::Format format{options.size[0], options.size[1], static_cast<std::uint32_t>(options.samples)};
+  const std::unique_ptr<host::FrameSink> sink = sinkOf(options, common, times.size());
+  play::playBaseline(session, file, times, options.camera, format, sink.get());
+  return 0;
+}
+
 int playFiles(cli::Session& session, const Options& options) {
   if (!options.offscreen) {
     throw Error(FaultCode::kNotBuilt, "", "", "this build has no window", "give --offscreen and -o frames/%05d.png");
   }
+  if (options.renderer == "tets") return playTets(session, options);
   const cli::CommonOptions& common = session.options();
   const bool draws = !common.output.empty() || !options.contact_sheet.empty();
   if (!draws && options.write_camera.empty()) {
@@ -259,7 +284,8 @@ int main(int argc, char** argv) {
               "pictures from A to B, both included; A >= B with STEP < 0 runs backward; T,A:B:STEP,… jumps; default: "
               "every frame of the file",
               &o.times)
-      .option("--renderer", "WHICH", "OpenGL, or plain C++", cli::Choice{&o.renderer, {"gl", "cpu"}})
+      .option("--renderer", "WHICH", "OpenGL; plain C++; or tetrahedra of one .t4h, flat, as the paper's baseline",
+              cli::Choice{&o.renderer, {"gl", "cpu", "tets"}})
       .option("--samples", "N", "samples a pixel: 1, 4, 9 or 16", &o.samples)
       .flag("--flat", "one normal a triangle instead of smooth ones", &o.flat)
       .heading("Camera")

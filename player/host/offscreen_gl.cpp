@@ -70,6 +70,7 @@ class OffscreenRenderer final : public render::Renderer {
     }
   }
   const char* name() const override { return renderer_->name(); }
+  std::uint64_t gpuBytes() const override { return renderer_->gpuBytes(); }
   Result<render::Image> draw(const scene::DrawList& list, std::span<const stream::Residency* const> sources) override {
     if (!gl_->makeCurrent()) return Fault{FaultCode::kIo, "", "OSMesa", "lost its context", "use --renderer cpu"};
     return renderer_->draw(list, sources);
@@ -80,12 +81,13 @@ class OffscreenRenderer final : public render::Renderer {
   std::unique_ptr<render::Renderer> renderer_;
 };
 
-Result<std::unique_ptr<render::Renderer>> makeGl(std::uint64_t gpu_budget_bytes) {
+Result<std::unique_ptr<render::Renderer>> makeGl(bool tets, std::uint64_t gpu_budget_bytes) {
   auto gl = OffscreenGl::create();
   if (!gl) {
     return Fault{FaultCode::kNotBuilt, "", "OSMesa", "gives no OpenGL 3.3 core context", "use --renderer cpu"};
   }
-  auto renderer = render::makeGlRenderer(OSMesaGetProcAddress, gpu_budget_bytes);
+  auto renderer = tets ? render::makeTetRenderer(OSMesaGetProcAddress, gpu_budget_bytes)
+                       : render::makeGlRenderer(OSMesaGetProcAddress, gpu_budget_bytes);
   if (!renderer.ok()) return renderer.fault();
   return std::unique_ptr<render::Renderer>(
       std::make_unique<OffscreenRenderer>(std::move(gl), std::move(renderer).value()));
@@ -93,7 +95,7 @@ Result<std::unique_ptr<render::Renderer>> makeGl(std::uint64_t gpu_budget_bytes)
 
 #else
 
-Result<std::unique_ptr<render::Renderer>> makeGl(std::uint64_t) {
+Result<std::unique_ptr<render::Renderer>> makeGl(bool, std::uint64_t) {
   return Fault{FaultCode::kNotBuilt, "", "renderer gl",
                "this build has no off-screen OpenGL (TET4D_WITH_OSMESA is off)",
                "use --renderer cpu, or build with -DTET4D_WITH_OSMESA=ON"};
@@ -114,8 +116,9 @@ bool hasOffscreenGl() {
 Result<std::unique_ptr<render::Renderer>> makeOffscreenRenderer(const std::string& name, unsigned threads,
                                                                 std::uint64_t gpu_budget_bytes) {
   if (name == "cpu") return render::makeCpuRenderer(threads);
-  if (name == "gl") return makeGl(gpu_budget_bytes);
-  return Fault{FaultCode::kUsage, "", "renderer", "found \"" + name + "\", expected gl or cpu", "give --renderer cpu"};
+  if (name == "gl" || name == "tets") return makeGl(name == "tets", gpu_budget_bytes);
+  return Fault{FaultCode::kUsage, "", "renderer", "found \"" + name + "\", expected gl, cpu or tets",
+               "give --renderer cpu"};
 }
 
 }  // namespace tet4d::host

@@ -12,9 +12,9 @@ namespace tet4d::host {
 // True if this build can draw with OpenGL off-screen.
 bool hasOffscreenGl();
 
-// The renderer called `name` ("gl" or "cpu") for off-screen pictures. "gl" makes a context of its own and makes it
-// current on the calling thread whenever it draws. Fault kNotBuilt if this build has no OSMesa, kUsage for another
-// name. threads: of the CPU renderer. gpu_budget_bytes: of page copies in the driver.
+// The renderer called `name` ("gl", "cpu" or "tets") for off-screen pictures. All but "cpu" make a context of its own
+// and make it current on the calling thread whenever it draws. Fault kNotBuilt if this build has no OSMesa, kUsage for
+// another name. threads: of the CPU renderer. gpu_budget_bytes: of page copies in the driver.
 Result<std::unique_ptr<render::Renderer>> makeOffscreenRenderer(const std::string& name, unsigned threads,
                                                                 std::uint64_t gpu_budget_bytes);
 

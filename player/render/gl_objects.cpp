@@ -75,6 +75,26 @@ Status loadGl(void (*(*resolver)(const char*))()) {
   return Fault{FaultCode::kNotBuilt, "", "OpenGL", "the driver has no version 3.3", "use --renderer cpu"};
 }
 
+Result<GlTable> makeTable(GLenum format, std::span<const std::byte> bytes, std::size_t texel_bytes, int unit,
+                          const std::string& place) {
+  GLint most_texels = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels);
+  const std::size_t texels = bytes.size() / texel_bytes;
+  if (texels > static_cast<std::size_t>(most_texels)) {
+    return Fault{
+        FaultCode::kOutOfMemory, "", place,
+        "a table of " + std::to_string(texels) + " texels exceeds the driver's limit of " + std::to_string(most_texels),
+        "use --renderer cpu"};
+  }
+  GlTable table{GlBuffer::create(), GlTexture::create()};
+  glBindBuffer(GL_TEXTURE_BUFFER, table.buffer.get());
+  glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STATIC_DRAW);
+  table.bind(unit);
+  glTexBuffer(GL_TEXTURE_BUFFER, format, table.buffer.get());
+  if (Status status = checkGl("upload of a table"); !status.ok()) return status.fault();
+  return table;
+}
+
 Status checkGl(const char* doing) {
   const GLenum error = glGetError();
   if (error == GL_NO_ERROR) return {};

@@ -3,9 +3,11 @@
 
 #include <glad/gl.h>
 
+#include <cstddef>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -84,6 +86,20 @@ class GlProgram {
 
 // Resolves GL's functions by name; Fault kNotBuilt if the current context has no OpenGL 3.3.
 Status loadGl(void (*(*resolver)(const char*))());
+
+// A table in the driver's memory that shaders read texel by texel.
+struct GlTable {
+  GlBuffer buffer;
+  GlTexture texture;
+  void bind(int unit) const {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_BUFFER, texture.get());
+  }
+};
+
+// A copy of `bytes`, bound to the unit. Fault kOutOfMemory, of `place`, if it exceeds the driver's limit.
+Result<GlTable> makeTable(GLenum format, std::span<const std::byte> bytes, std::size_t texel_bytes, int unit,
+                          const std::string& place);
 
 // The driver's error since the last call, as a Fault that names what was being done.
 Status checkGl(const char* doing);

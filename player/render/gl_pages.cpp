@@ -13,34 +13,10 @@ struct Table {
   std::size_t texel_bytes;
 };
 
-// A buffer texture of the table, bound to the unit.
-Status upload(const Table& table, std::size_t number, int unit, GlBuffer& buffer, GlTexture& texture) {
-  GLint most_texels = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels);
-  const std::size_t texels = table.bytes.size() / table.texel_bytes;
-  if (texels > static_cast<std::size_t>(most_texels)) {
-    return Fault{
-        FaultCode::kOutOfMemory, "", "page " + std::to_string(number),
-        "a table of " + std::to_string(texels) + " texels exceeds the driver's limit of " + std::to_string(most_texels),
-        "use --renderer cpu"};
-  }
-  buffer = GlBuffer::create();
-  texture = GlTexture::create();
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindBuffer(GL_TEXTURE_BUFFER, buffer.get());
-  glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(table.bytes.size()), table.bytes.data(), GL_STATIC_DRAW);
-  glBindTexture(GL_TEXTURE_BUFFER, texture.get());
-  glTexBuffer(GL_TEXTURE_BUFFER, table.format, buffer.get());
-  return {};
-}
-
 }  // namespace
 
 void GlPage::bind() const {
-  for (unsigned unit = 0; unit < 4; ++unit) {
-    glActiveTexture(GL_TEXTURE0 + unit);
-    glBindTexture(GL_TEXTURE_BUFFER, textures[unit].get());
-  }
+  for (std::size_t unit = 0; unit < tables.size(); ++unit) tables[unit].bind(static_cast<int>(unit));
 }
 
 Result<GlPage*> GlPages::get(std::size_t source, std::size_t number, const dyntri::PageView& page) {
@@ -53,13 +29,14 @@ Result<GlPage*> GlPages::get(std::size_t source, std::size_t number, const dyntr
                            {GL_R32UI, std::as_bytes(page.triangles), 4},
                            {GL_RG32F, std::as_bytes(page.lifespans), 8}};
   GlPage copy;
-  for (unsigned unit = 0; unit < 4; ++unit) {
-    if (Status status = upload(tables[unit], number, static_cast<int>(unit), copy.buffers[unit], copy.textures[unit]);
-        !status.ok())
-      return status.fault();
-    copy.bytes += tables[unit].bytes.size();
+  for (std::size_t unit = 0; unit < copy.tables.size(); ++unit) {
+    const Table& table = tables[unit];
+    auto made = makeTable(table.format, table.bytes, table.texel_bytes, static_cast<int>(unit),
+                          "page " + std::to_string(number));
+    if (!made.ok()) return made.fault();
+    copy.tables[unit] = std::move(made).value();
+    copy.bytes += table.bytes.size();
   }
-  if (Status status = checkGl("upload of a page"); !status.ok()) return status.fault();
   copy.number = number;
   copy.last_frame = frame_;
   copy.edge_count = static_cast<GLint>(page.edges.size());
@@ -69,20 +46,14 @@ Result<GlPage*> GlPages::get(std::size_t source, std::size_t number, const dyntr
 }
 
 Status GlPages::bindColumn(GlPage& page, std::size_t column, std::span<const float> rows, int unit) {
-  const auto [found, is_new] = page.columns.try_emplace(column);
-  GlColumn& copy = found->second;
-  if (!is_new) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_BUFFER, copy.texture.get());
+  if (const auto found = page.columns.find(column); found != page.columns.end()) {
+    found->second.bind(unit);
     return {};
   }
-  const Table table{GL_R32F, std::as_bytes(rows), sizeof(float)};
-  Status status = upload(table, page.number, unit, copy.buffer, copy.texture);
-  if (status.ok()) status = checkGl("upload of a column");
-  if (!status.ok()) {
-    page.columns.erase(found);
-    return status;
-  }
+  auto made =
+      makeTable(GL_R32F, std::as_bytes(rows), sizeof(float), unit, "column of page " + std::to_string(page.number));
+  if (!made.ok()) return made.fault();
+  page.columns.emplace(column, std::move(made).value());
   page.bytes += rows.size_bytes();
   bytes_ += rows.size_bytes();
   return {};

@@ -1,6 +1,7 @@
 // Copies of pages in the driver's memory, as buffer textures, within a byte budget. Private to player/render.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -11,15 +12,9 @@
 
 namespace tet4d::render {
 
-struct GlColumn {
-  GlBuffer buffer;
-  GlTexture texture;
-};
-
 struct GlPage {
-  GlBuffer buffers[4];
-  GlTexture textures[4];                    // by unit
-  std::map<std::size_t, GlColumn> columns;  // those drawn so far
+  std::array<GlTable, 4> tables;           // by unit
+  std::map<std::size_t, GlTable> columns;  // those drawn so far
   std::size_t number = 0;
   std::uint64_t bytes = 0;
   std::uint64_t last_frame = 0;
@@ -45,6 +40,7 @@ class GlPages {
   Status bindColumn(GlPage& page, std::size_t column, std::span<const float> rows, int unit);
   // Drops the copies used longest ago, none of this frame, until the budget holds.
   void evict();
+  std::uint64_t bytes() const { return bytes_; }
 
  private:
   std::uint64_t budget_bytes_, bytes_ = 0, frame_ = 0;

@@ -70,6 +70,7 @@ class GlRenderer final : public Renderer {
         pages_(gpu_budget_bytes),
         no_attributes_(GlVertexArray::create()) {}
   const char* name() const override { return "gl"; }
+  std::uint64_t gpuBytes() const override { return pages_.bytes(); }
 
   Result<Image> draw(const scene::DrawList& list, std::span<const stream::Residency* const> sources) override {
     const auto grid = sampleGrid(list.format);

@@ -16,4 +16,8 @@ using GlResolver = void (*(*)(const char* name))();
 // Fault kNotBuilt if the context has no OpenGL 3.3.
 Result<std::unique_ptr<Renderer>> makeGlRenderer(GlResolver resolver, std::uint64_t gpu_budget_bytes);
 
+// The paper's baseline: draws Residency::residentTets(), sliced by the vertex shader from indexed textures, each
+// triangle with its own normal, in the surfaces' colours. Items name pages; their runs are not used. The rest as above.
+Result<std::unique_ptr<Renderer>> makeTetRenderer(GlResolver resolver, std::uint64_t gpu_budget_bytes);
+
 }  // namespace tet4d::render

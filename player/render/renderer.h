@@ -19,8 +19,10 @@ inline constexpr std::uint32_t kMaxSide = 16384;  // pixels, after multiplicatio
 class Renderer {
  public:
   virtual ~Renderer() = default;
-  // "gl" or "cpu".
+  // "gl", "cpu" or "tets".
   virtual const char* name() const = 0;
+  // Of copies of pages that are kept in the driver's memory now.
+  virtual std::uint64_t gpuBytes() const { return 0; }
   // Draws the list. Pages named by a surface's items must be resident in sources[surface.source]. A renderer may keep
   // copies of pages by source and number: the same rank must mean the same file in every call. A Fault says what the
   // machine or the driver refused.

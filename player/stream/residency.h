@@ -1,12 +1,21 @@
 // What a chooser and a renderer see of a file's pages: those that are in memory, checked and proved.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 
 #include "formats/dynamic_triangles.h"
 
 namespace tet4d::stream {
+
+// A page of tetrahedra; every index is below the number of vertices.
+struct TetPage {
+  std::span<const Vec4f> vertices;
+  std::span<const std::array<std::uint32_t, 4>> tets;
+};
 
 class Residency {
  public:
@@ -18,6 +27,11 @@ class Residency {
   virtual std::span<const float> residentColumn(std::size_t page, std::size_t column) const {
     static_cast<void>(page), static_cast<void>(column);
     return {};
+  }
+  // The page as tetrahedra, where that is what the file holds.
+  virtual std::optional<TetPage> residentTets(std::size_t page) const {
+    static_cast<void>(page);
+    return std::nullopt;
   }
 };
 
