@@ -181,7 +181,12 @@ void drawAll(cli::Session& session, const Options& options, host::Film& film) {
                             std::min(half, usual));
   session.progress().phase("draw", film.times.size());
   host::BudgetReport report;
+  std::uint64_t drawn = 0, most_gpu_bytes = 0;
+  double draw_ms = 0;
   const auto after = [&](const host::FrameCost& c) {
+    drawn += c.drawn;
+    draw_ms += c.draw_ms;
+    most_gpu_bytes = std::max(most_gpu_bytes, renderer->gpuBytes());
     session.stats().frame({film.times[c.index].time, c.ms, c.drawn, c.processed, c.bytes_touched, c.prefetched,
                            c.absent, c.load_ms, c.choose_ms, c.draw_ms, c.samples});
     pagers.warn(session, film.skip_damaged);
@@ -193,6 +198,13 @@ void drawAll(cli::Session& session, const Options& options, host::Film& film) {
     session.stats().error("budget_prediction_p95", report.error_p95);
   }
   pagers.count(session);
+  session.stats().count("triangles_drawn", drawn);
+  session.stats().count("gpu_bytes", most_gpu_bytes);
+  if (draw_ms > 0) {
+    session.detail(std::to_string(drawn) + " triangles in " + std::to_string(film.times.size()) + " pictures, " +
+                   std::to_string(static_cast<std::uint64_t>(static_cast<double>(drawn) / draw_ms * 1000)) +
+                   " a second of drawing");
+  }
   if (sheet) {
     const std::vector<std::byte> png = unwrap(host::encodePng(sheet->compose(), options.contact_sheet));
     unwrap(host::writeFile(options.contact_sheet, png, common.force));

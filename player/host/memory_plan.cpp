@@ -11,8 +11,9 @@
 namespace tet4d::host {
 namespace {
 
-// A sample: CPU: colour 4, depth 4 and id 4 of the surface, the same of the walls. GL: colour 4, depth 4, read back 4.
-constexpr std::uint64_t kCpuSampleBytes = 20, kGlSampleBytes = 12;
+// A sample: CPU: colour 4, depth 4 and id 4 of the surface, the same of the walls. GL: colour 4, depth 4, read back 4,
+// and the walls once more where a surface refracts.
+constexpr std::uint64_t kCpuSampleBytes = 24, kGlSampleBytes = 16;
 // A pixel: the averaged picture.
 constexpr std::uint64_t kPictureBytes = 4;
 // A texel of summed normals, and how many a row has.

@@ -21,7 +21,7 @@ void playBaseline(cli::Session& session, const hypermesh::File& file, const std:
   session.progress().phase("draw", times.size());
   std::uint64_t drawn = 0, gpu_bytes = 0;
   unwrap(host::playTets(film, source, *renderer, sink, [&](const host::TetFrameCost& cost) {
-    cli::Frame frame{};
+    cli::Stats::Frame frame;
     frame.time = times[cost.index].time;
     frame.ms = cost.ms;
     frame.drawn = cost.drawn;
