@@ -1,4 +1,4 @@
-// tet4d-play: dynamic triangles → pictures. Ponchio & Hormann 2008, sec. 7.1.
+// tet4d-play: dynamic triangles → a window, pictures, films. Ponchio & Hormann 2008, sec. 7.1.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +17,8 @@
 #include "player/host/output_names.h"
 #include "player/host/playback.h"
 #include "player/host/png.h"
+#include "player/host/viewer_files.h"
+#include "player/host/window.h"
 #include "player/scene/shot_file.h"
 #include "tools/common/cli.h"
 #include "tools/play/baseline.h"
@@ -30,7 +32,7 @@ constexpr std::uint64_t kMostIoThreads = 64;
 
 struct Options {
   std::vector<std::string> inputs;
-  bool offscreen = false, flat = false;
+  bool offscreen = false, flat = false, panels = false;
   std::array<std::uint32_t, 2> size{1280, 720};
   std::string at, times, camera, write_camera, contact_sheet;
   std::string renderer = host::hasOffscreenGl() ? "gl" : "cpu";
@@ -39,17 +41,9 @@ struct Options {
   std::uint64_t samples = 4, columns = 4, tiles = 0, gpu_memory = 0, io_threads = 1;
   double orbit_degrees = 0, fps = 25;
   std::optional<double> budget_ms;
+  std::string typed, screenshot;  // for tests of the window
+  std::uint64_t quit_after = 0;
 };
-
-dyntri::File openInput(const std::string& path) {
-  const container::FileHeader header = unwrap(container::peek(path));
-  if (header.payload == hypermesh::kPayload) {
-    const std::string output = std::filesystem::path(path).replace_extension(".t4d").string();
-    throw Error(FaultCode::kBadInput, path, "", "is a hypermesh, and the player plays dynamic triangles",
-                "run first: dyntri-build " + path + " -o " + output + " (or give --renderer tets)");
-  }
-  return unwrap(dyntri::File::open(path));
-}
 
 // --at, --times, or every frame of the files. Frame numbers count in the table of all files' times.
 std::vector<host::PictureTime> timesOf(const Options& options, std::span<const scene::SceneFile> files) {
@@ -234,10 +228,70 @@ int playTets(cli::Session& session, const Options& options) {
   return 0;
 }
 
-int playFiles(cli::Session& session, const Options& options) {
-  if (!options.offscreen) {
-    throw Error(FaultCode::kNotBuilt, "", "", "this build has no window", "give --offscreen and -o frames/%05d.png");
+// The window's player, or one picture of it.
+host::PlayerRequest requestOf(cli::Session& session, const Options& options) {
+  host::PlayerRequest request;
+  request.files = options.inputs;
+  request.renderer = options.renderer;
+  request.threads = static_cast<unsigned>(session.executor().threads());
+  request.width = options.size[0];
+  request.height = options.size[1];
+  request.samples = static_cast<std::uint32_t>(options.samples);
+  request.smooth = !options.flat;
+  const std::uint64_t half = session.memory().available() / 2;
+  const std::uint64_t usual = session.options().memory_bytes != 0 ? half : host::usualPageBytes();
+  request.budget_bytes = std::min(half, usual) / std::max<std::size_t>(1, options.inputs.size());
+  request.budget_ms = options.budget_ms;
+  request.typed = options.typed;
+  request.quit_after = options.quit_after;
+  request.screenshot = options.screenshot;
+  if (options.at.empty() && options.camera.empty()) return request;
+  std::vector<dyntri::File> opened;
+  for (const std::string& input : options.inputs) opened.push_back(unwrap(host::openDynamicTriangles(input)));
+  std::vector<scene::SceneFile> files;
+  for (const dyntri::File& file : opened) files.push_back({&file, std::nullopt, true});
+  if (!options.at.empty()) request.time = timesOf(options, files).front().time;
+  if (!options.camera.empty()) request.shot = shotOf(options, files);
+  return request;
+}
+
+// What an option that belongs to films means for a window.
+void refuseFilmOptions(const Options& options, const cli::CommonOptions& common) {
+  for (const auto& [name, is_given] : {std::pair{"--output", !common.output.empty() && !options.panels},
+                                       {"--times", !options.times.empty()},
+                                       {"--contact-sheet", !options.contact_sheet.empty()},
+                                       {"--write-camera", !options.write_camera.empty()},
+                                       {"--renderer tets", options.renderer == "tets"}}) {
+    if (!is_given) continue;
+    throw Error(
+        FaultCode::kUsage, "", name,
+        options.panels ? "cannot go with --panels" : "is for pictures in files, and without --offscreen a window opens",
+        options.panels ? "leave it out" : "give --offscreen too");
   }
+}
+
+int playInWindow(cli::Session& session, const Options& options) {
+  refuseFilmOptions(options, session.options());
+  unwrap(host::runWindow(requestOf(session, options)));
+  return 0;
+}
+
+int drawPanels(cli::Session& session, const Options& options) {
+  const std::string& output = session.options().output;
+  refuseFilmOptions(options, session.options());
+  if (output.empty() || output == "-" || !endsIn(output, ".png") || host::hasNumber(output)) {
+    throw Error(FaultCode::kUsage, output, "--panels", "draws one picture, as PNG",
+                "give -o player.png, and --at for its time");
+  }
+  unwrap(host::checkMayWrite(output, session.options().force));
+  const render::Image image = unwrap(host::drawWithPanels(requestOf(session, options)));
+  unwrap(host::writeFile(output, unwrap(host::encodePng(image, output)), session.options().force));
+  return 0;
+}
+
+int playFiles(cli::Session& session, const Options& options) {
+  if (!options.offscreen) return playInWindow(session, options);
+  if (options.panels) return drawPanels(session, options);
   if (options.renderer == "tets") return playTets(session, options);
   const cli::CommonOptions& common = session.options();
   const bool draws = !common.output.empty() || !options.contact_sheet.empty();
@@ -250,7 +304,7 @@ int playFiles(cli::Session& session, const Options& options) {
   std::vector<dyntri::File> opened;
   std::uint64_t triangles = 0;
   for (const std::string& input : options.inputs) {
-    opened.push_back(openInput(input));
+    opened.push_back(unwrap(host::openDynamicTriangles(input)));
     session.dependsOn(input);
     triangles += opened.back().header().triangles;
     if (opened.back().header().triangles == 0) session.warn(input + " has no triangles: nothing of it is drawn");
@@ -281,7 +335,8 @@ int playFiles(cli::Session& session, const Options& options) {
 int main(int argc, char** argv) {
   Options o;
   cli::Command command("tet4d-play", "Plays dynamic triangles: pictures or a film at any time, between frames too.");
-  command.example("tet4d-play dam.t4d --offscreen -o frames/%05d.png", "one picture a frame of the file")
+  command.example("tet4d-play dam.t4d", "a window; ? lists the keys")
+      .example("tet4d-play dam.t4d --offscreen -o frames/%05d.png", "one picture a frame of the file")
       .example("tet4d-play dam.t4d --offscreen --times 0f:20f:0.1f --format y4m -o - | ffmpeg -i - dam.mp4",
                "ten times slower, as a film")
       .example("tet4d-play dam.t4d --offscreen --at 0.35 --write-camera camera.json -o dam.png",
@@ -289,8 +344,8 @@ int main(int argc, char** argv) {
       .positional("FILE", "dynamic triangles (.t4d); several share one scene, one camera and the world's time",
                   &o.inputs)
       .heading("Pictures")
-      .flag("--offscreen", "draw into files, without a display", &o.offscreen)
-      .option("--size", "WxH", "of a picture, pixels", cli::Extent{&o.size})
+      .flag("--offscreen", "draw into files, without a display; without it a window opens", &o.offscreen)
+      .option("--size", "WxH", "of a picture or the window, pixels", cli::Extent{&o.size})
       .option("--at", "T", "one picture at world time T, or at frame number T with the suffix f", &o.at)
       .option("--times", "A:B:STEP",
               "pictures from A to B, both included; A >= B with STEP < 0 runs backward; T,A:B:STEP,… jumps; default: "
@@ -300,6 +355,11 @@ int main(int argc, char** argv) {
               cli::Choice{&o.renderer, {"gl", "cpu", "tets"}})
       .option("--samples", "N", "samples a pixel: 1, 4, 9 or 16", &o.samples)
       .flag("--flat", "one normal a triangle instead of smooth ones", &o.flat)
+      .flag("--panels", "with the window's panels over the picture", &o.panels)
+      .option("--type", "KEYS", "keys pressed in the window once everything is open", &o.typed, cli::kNotInHelp)
+      .option("--quit-after", "N", "close the window after N pictures", &o.quit_after, cli::kNotInHelp)
+      .option("--screenshot", "FILE", "what the window shows at the end", &o.screenshot,
+              cli::kNotInHelp | cli::kIsOutput)
       .heading("Camera")
       .option("--camera", "FILE", "camera, lights and material (JSON); default: fitted to the data", &o.camera)
       .option("--orbit", "DEG", "turn of the camera about the vertical over the whole film", &o.orbit_degrees)

@@ -6,8 +6,6 @@
 
 #ifdef TET4D_WITH_OSMESA
 #include <GL/osmesa.h>
-
-#include "player/render/gl_renderer.h"
 #endif
 
 namespace tet4d::host {
@@ -16,7 +14,7 @@ namespace {
 #ifdef TET4D_WITH_OSMESA
 
 // A current context. Pictures are drawn into framebuffer objects, so its own buffer is a formality.
-class OffscreenGl {
+class OffscreenGl final : public GlContext {
  public:
   static std::unique_ptr<OffscreenGl> create() {
     // Mesa would write compiled shaders under the user's home.
@@ -40,11 +38,14 @@ class OffscreenGl {
     gl->context_ = OSMesaCreateContextAttribs(kAttributes.data(), nullptr);
     return gl->context_ != nullptr && gl->makeCurrent() ? std::move(gl) : nullptr;
   }
-  bool makeCurrent() { return OSMesaMakeCurrent(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSide, kSide) != GL_FALSE; }
+  render::GlResolver resolver() const override { return OSMesaGetProcAddress; }
+  bool makeCurrent() override {
+    return OSMesaMakeCurrent(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSide, kSide) != GL_FALSE;
+  }
   OffscreenGl() = default;
   OffscreenGl(const OffscreenGl&) = delete;
   OffscreenGl& operator=(const OffscreenGl&) = delete;
-  ~OffscreenGl() {
+  ~OffscreenGl() override {
     if (context_ != nullptr) OSMesaDestroyContext(context_);
   }
 
@@ -81,11 +82,13 @@ class OffscreenRenderer final : public render::Renderer {
   std::unique_ptr<render::Renderer> renderer_;
 };
 
+Fault noContext() {
+  return {FaultCode::kNotBuilt, "", "OSMesa", "gives no OpenGL 3.3 core context", "use --renderer cpu"};
+}
+
 Result<std::unique_ptr<render::Renderer>> makeGl(bool tets, std::uint64_t gpu_budget_bytes) {
   auto gl = OffscreenGl::create();
-  if (!gl) {
-    return Fault{FaultCode::kNotBuilt, "", "OSMesa", "gives no OpenGL 3.3 core context", "use --renderer cpu"};
-  }
+  if (!gl) return noContext();
   auto renderer = tets ? render::makeTetRenderer(OSMesaGetProcAddress, gpu_budget_bytes)
                        : render::makeGlRenderer(OSMesaGetProcAddress, gpu_budget_bytes);
   if (!renderer.ok()) return renderer.fault();
@@ -95,11 +98,12 @@ Result<std::unique_ptr<render::Renderer>> makeGl(bool tets, std::uint64_t gpu_bu
 
 #else
 
-Result<std::unique_ptr<render::Renderer>> makeGl(bool, std::uint64_t) {
-  return Fault{FaultCode::kNotBuilt, "", "renderer gl",
-               "this build has no off-screen OpenGL (TET4D_WITH_OSMESA is off)",
-               "use --renderer cpu, or build with -DTET4D_WITH_OSMESA=ON"};
+Fault notBuilt() {
+  return {FaultCode::kNotBuilt, "", "renderer gl", "this build has no off-screen OpenGL (TET4D_WITH_OSMESA is off)",
+          "use --renderer cpu, or build with -DTET4D_WITH_OSMESA=ON"};
 }
+
+Result<std::unique_ptr<render::Renderer>> makeGl(bool, std::uint64_t) { return notBuilt(); }
 
 #endif
 
@@ -110,6 +114,16 @@ bool hasOffscreenGl() {
   return true;
 #else
   return false;
+#endif
+}
+
+Result<std::unique_ptr<GlContext>> makeOffscreenContext() {
+#ifdef TET4D_WITH_OSMESA
+  auto gl = OffscreenGl::create();
+  if (!gl) return noContext();
+  return std::unique_ptr<GlContext>(std::move(gl));
+#else
+  return notBuilt();
 #endif
 }
 

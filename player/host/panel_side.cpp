@@ -1,0 +1,307 @@
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <string>
+
+#include "player/host/panels.h"
+
+namespace tet4d::host {
+namespace {
+
+constexpr int kNumberWidth = 150;
+
+struct Lighting {
+  const char* name;
+  std::array<std::array<double, 6>, 3> lights;  // direction, colour
+  double ambient;
+};
+
+// The first is defaultShot()'s.
+constexpr std::array<Lighting, 4> kLightings{{
+    {"studio",
+     {{{0.75, 0.55, -1.0, 0.80, 0.77, 0.71},
+       {-1.0, 0.35, -0.25, 0.16, 0.19, 0.24},
+       {-0.1, -1.0, -0.45, 0.20, 0.21, 0.23}}},
+     0.20},
+    {"soft",
+     {{{0.3, 0.4, -1.0, 0.42, 0.42, 0.42}, {-1.0, 0.2, -0.4, 0.26, 0.26, 0.26}, {0.6, -0.8, -0.3, 0.22, 0.22, 0.22}}},
+     0.32},
+    {"low sun",
+     {{{1.0, 0.35, -0.22, 1.05, 0.83, 0.58},
+       {-0.4, 0.2, -1.0, 0.10, 0.14, 0.24},
+       {-1.0, -0.6, -0.2, 0.05, 0.06, 0.09}}},
+     0.10},
+    {"overhead",
+     {{{0.05, 0.08, -1.0, 0.95, 0.95, 0.93}, {-0.6, 1.0, -0.2, 0.14, 0.14, 0.15}, {0.6, -1.0, -0.2, 0.10, 0.10, 0.11}}},
+     0.14},
+}};
+
+void useLighting(const Lighting& lighting, scene::Shot& shot) {
+  shot.lights.clear();
+  for (const auto& l : lighting.lights) shot.lights.push_back({{l[0], l[1], l[2]}, {l[3], l[4], l[5]}});
+  shot.ambient = glm::dvec3(lighting.ambient);
+}
+
+bool editColor(const char* label, glm::dvec3& color) {
+  std::array<float, 3> rgb{static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
+  if (!ImGui::ColorEdit3(label, rgb.data(), ImGuiColorEditFlags_NoInputs)) return false;
+  color = {double{rgb[0]}, double{rgb[1]}, double{rgb[2]}};
+  return true;
+}
+
+std::string shortName(const std::string& path) {
+  std::string name = std::filesystem::path(path).filename().string();
+  if (name.size() > 24) name = name.substr(0, 11) + "..." + name.substr(name.size() - 10);
+  return name;
+}
+
+void filesPart(Viewer& viewer) {
+  ViewerState& state = viewer.state();
+  if (viewer.files().count() == 0) return ImGui::TextDisabled("drop .t4d files on the window");
+  std::size_t removed = std::numeric_limits<std::size_t>::max();
+  const auto& files = viewer.files().all();
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (files[i] == nullptr) continue;
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::Checkbox("##shown", &files[i]->shown)) viewer.changed();
+    markPlace(state, ("shown " + std::to_string(i)).c_str());
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("show or hide");
+    ImGui::SameLine();
+    const glm::dvec3 color = files[i]->material.color;
+    ImGui::ColorButton("##color",
+                       {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z), 1},
+                       ImGuiColorEditFlags_NoTooltip, {14, 19});
+    ImGui::SameLine();
+    if (ImGui::Selectable(shortName(files[i]->path).c_str(), state.selected == i, 0, {170, 0})) state.selected = i;
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s\n%llu triangles", files[i]->path.c_str(),
+                        static_cast<unsigned long long>(files[i]->file.header().triangles));
+    ImGui::SameLine();
+    if (ImGui::SmallButton("x")) removed = i;
+    markPlace(state, ("remove " + std::to_string(i)).c_str());
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("close this file");
+    ImGui::PopID();
+  }
+  if (removed < files.size()) viewer.removeFile(removed);
+}
+
+void materialPart(Viewer& viewer) {
+  ViewerState& state = viewer.state();
+  const auto& files = viewer.files().all();
+  if (state.selected >= files.size() || files[state.selected] == nullptr) {
+    const auto at = std::find_if(files.begin(), files.end(), [](const auto& file) { return file != nullptr; });
+    if (at == files.end()) return;
+    state.selected = static_cast<std::size_t>(at - files.begin());
+  }
+  scene::Material& material = files[state.selected]->material;
+  bool changed = editColor("outside", material.color);
+  markPlace(state, "outside");
+  ImGui::SameLine(130);
+  changed |= editColor("inside", material.back_color);
+  auto specular = static_cast<float>(material.specular), shininess = static_cast<float>(material.shininess);
+  ImGui::SetNextItemWidth(kNumberWidth);
+  if (ImGui::SliderFloat("highlight", &specular, 0, 1, "%.2f")) changed = true, material.specular = double{specular};
+  ImGui::SetNextItemWidth(kNumberWidth);
+  if (ImGui::SliderFloat("sharpness", &shininess, 1, 200, "%.0f", ImGuiSliderFlags_Logarithmic)) {
+    changed = true;
+    material.shininess = std::max(1.0, double{shininess});
+  }
+  if (changed) viewer.changed();
+}
+
+void surroundingsPart(Viewer& viewer) {
+  scene::Shot& shot = viewer.state().shot;
+  bool changed = editColor("sky", shot.background.top);
+  ImGui::SameLine(130);
+  changed |= editColor("ground", shot.background.bottom);
+  bool has_room = shot.background.room.has_value();
+  if (ImGui::Checkbox("walls", &has_room)) viewer.act(Action::kRoom);
+  markPlace(viewer.state(), "walls");
+  if (shot.background.room) {
+    ImGui::SameLine(130);
+    changed |= editColor("their colour", *shot.background.room);
+  }
+  ImGui::SetNextItemWidth(kNumberWidth);
+  const auto* present = std::find_if(kLightings.begin(), kLightings.end(), [&](const Lighting& lighting) {
+    scene::Shot other = shot;
+    useLighting(lighting, other);
+    return shot.ambient == other.ambient && shot.lights.size() == 3 && shot.lights[0].color == other.lights[0].color;
+  });
+  if (ImGui::BeginCombo("light", present == kLightings.end() ? "as given" : present->name)) {
+    for (const Lighting& lighting : kLightings) {
+      if (!ImGui::Selectable(lighting.name, &lighting == present)) continue;
+      useLighting(lighting, shot);
+      changed = true;
+    }
+    ImGui::EndCombo();
+  }
+  if (changed) viewer.changed();
+}
+
+void viewPart(Viewer& viewer) {
+  const auto button = [&](const char* label, Action action, bool same_line) {
+    if (same_line) ImGui::SameLine(0, 4);
+    if (ImGui::Button(label, {60, 0})) viewer.act(action);
+  };
+  button("front", Action::kFront, false);
+  button("right", Action::kRight, true);
+  button("top", Action::kTop, true);
+  button("3/4", Action::kThreeQuarter, true);
+  button("back", Action::kBack, false);
+  button("left", Action::kLeft, true);
+  button("bottom", Action::kBottom, true);
+  button("fit", Action::kFit, true);
+  bool ortho = viewer.state().shot.view.ortho_height.has_value();
+  if (ImGui::Checkbox("orthographic", &ortho)) viewer.act(Action::kProjection);
+  ImGui::SameLine(150);
+  bool smooth = viewer.state().smooth;
+  if (ImGui::Checkbox("smooth", &smooth)) viewer.act(Action::kSmooth);
+}
+
+void row(const char* name, const std::string& value) {
+  ImGui::TextDisabled("%s", name);
+  ImGui::SameLine(110);
+  ImGui::TextUnformatted(value.c_str());
+}
+
+void budgetPart(Viewer& viewer) {
+  ViewerState& state = viewer.state();
+  auto budget = static_cast<float>(state.budget_ms);
+  ImGui::SetNextItemWidth(kNumberWidth);
+  if (ImGui::SliderFloat("ms moving", &budget, 5, 500, "%.0f", ImGuiSliderFlags_Logarithmic)) {
+    viewer.setBudget(double{budget}, state.samples);
+  }
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip(
+        "While something moves, a picture that takes longer\nis drawn with fewer samples, or smaller and stretched.");
+  }
+  ImGui::SetNextItemWidth(kNumberWidth);
+  if (ImGui::BeginCombo("samples at rest", std::to_string(state.samples).c_str())) {
+    for (const std::uint32_t samples : {1u, 4u, 9u, 16u}) {
+      if (!ImGui::Selectable(std::to_string(samples).c_str(), samples == state.samples)) continue;
+      viewer.setBudget(state.budget_ms, samples);
+    }
+    ImGui::EndCombo();
+  }
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%u samples, 1/%u size", state.quality.samples, state.quality.divide);
+  row("this picture", text.data());
+  std::snprintf(text.data(), text.size(), "%.1f ms, p95 %.1f ms", state.budget.p50_ms, state.budget.p95_ms);
+  row("pictures", text.data());
+}
+
+std::string grouped(std::uint64_t number) {
+  const std::string digits = std::to_string(number);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ' ';
+    text += digits[i];
+  }
+  return text;
+}
+
+std::string bytesText(std::uint64_t bytes) {
+  std::array<char, 32> text{};
+  const auto b = static_cast<double>(bytes);
+  if (bytes < 1'000'000) {
+    std::snprintf(text.data(), text.size(), "%.1f kB", b / 1e3);
+  } else if (bytes < 1'000'000'000) {
+    std::snprintf(text.data(), text.size(), "%.1f MB", b / 1e6);
+  } else {
+    std::snprintf(text.data(), text.size(), "%.2f GB", b / 1e9);
+  }
+  return text.data();
+}
+
+void statisticsPart(Viewer& viewer) {
+  const ViewerState& state = viewer.state();
+  const SceneStats& stats = state.stats;
+  float highest = 1;
+  for (const float ms : state.frame_ms) highest = std::max(highest, ms);
+  std::array<char, 40> label{};
+  std::snprintf(label.data(), label.size(), "%.1f ms", stats.ms);
+  ImGui::PlotLines("##ms", state.frame_ms.data(), static_cast<int>(state.frame_ms.size()), 0, label.data(), 0,
+                   1.15f * highest, {250, 42});
+  row("drawn", grouped(stats.drawn) + " triangles");
+  std::array<char, 48> ratio{};
+  std::snprintf(ratio.data(), ratio.size(), "%.2f x drawn",
+                stats.drawn > 0 ? static_cast<double>(stats.processed) / static_cast<double>(stats.drawn) : 1.0);
+  row("processed", ratio.data());
+  row("of all", grouped(viewer.files().triangles()));
+  row("pages alive",
+      grouped(stats.pages_active) + (stats.pages_waiting > 0 ? ", loading " + grouped(stats.pages_waiting) : ""));
+  row("read", bytesText(stats.bytes_touched));
+  row("in memory", bytesText(stats.resident_bytes));
+  if (stats.pages_damaged > 0) row("damaged", grouped(stats.pages_damaged) + " pages left out");
+}
+
+void savePart(Viewer& viewer) {
+  ViewerState& state = viewer.state();
+  if (ImGui::Button("picture", {78, 0})) viewer.act(Action::kSavePicture);
+  markPlace(state, "save picture");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("the picture without panels, as PNG (s)");
+  ImGui::SameLine(0, 8);
+  const Recorder* recorder = viewer.recorder();
+  if (ImGui::Button(recorder != nullptr ? "stop" : "film", {78, 0})) viewer.act(Action::kFilm);
+  markPlace(state, "film");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("the range of the time line (v)");
+  ImGui::SameLine(0, 8);
+  if (ImGui::Button("camera", {78, 0})) viewer.act(Action::kWriteCamera);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("for --camera (w)");
+  if (viewer.recorder() != nullptr) {
+    recorder = viewer.recorder();
+    const std::string text = std::to_string(recorder->taken()) + " of " + std::to_string(recorder->count());
+    ImGui::ProgressBar(static_cast<float>(recorder->taken()) / static_cast<float>(recorder->count()), {250, 0},
+                       text.c_str());
+    return;
+  }
+  ImGui::SetNextItemWidth(kNumberWidth);
+  if (ImGui::BeginCombo("film as", state.film_kind == FilmKind::kPng ? "PNG pictures" : "y4m")) {
+    if (ImGui::Selectable("PNG pictures", state.film_kind == FilmKind::kPng)) state.film_kind = FilmKind::kPng;
+    if (ImGui::Selectable("y4m", state.film_kind == FilmKind::kY4m)) state.film_kind = FilmKind::kY4m;
+    ImGui::EndCombo();
+  }
+  ImGui::SetNextItemWidth(kNumberWidth);
+  ImGui::SliderInt("between frames", &state.film_between, 0, 9);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("pictures between two frames of the data");
+}
+
+}  // namespace
+
+void toggleRoom(scene::Background& background) {
+  if (background.room) return background.room.reset();
+  const bool is_dark = background.top.x + background.bottom.x < 1;
+  background.room = is_dark ? glm::dvec3(0.16, 0.18, 0.21) : *scene::Background{}.room;
+}
+
+void toggleDark(scene::Background& background) {
+  const bool is_dark = background.top.x + background.bottom.x < 1, has_room = background.room.has_value();
+  background = is_dark ? scene::Background{} : scene::Background{{0.10, 0.12, 0.15}, {0.20, 0.23, 0.27}, {}};
+  if (background.room.has_value() != has_room) toggleRoom(background);
+}
+
+void layOutSide(Viewer& viewer, const PanelLayout& layout) {
+  ImGui::TextDisabled("press ? for the keys");
+  const auto part = [&](const char* title, bool open, void (*body)(Viewer&)) {
+    if (!ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0)) return;
+    markPlace(viewer.state(), title);
+    body(viewer);
+  };
+  // What does not fit at first is one click away rather than below the end.
+  part("Files", true, filesPart);
+  part("Colours", true, [](Viewer& v) {
+    materialPart(v);
+    ImGui::Separator();
+    surroundingsPart(v);
+  });
+  part("View", layout.height >= 780, viewPart);
+  part("Save", true, savePart);
+  part("Statistics", layout.height >= 640, statisticsPart);
+  part("Budget", layout.height >= 860, budgetPart);
+}
+
+}  // namespace tet4d::host
