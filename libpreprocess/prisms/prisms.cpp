@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libpreprocess/error.h"
+#include "libpreprocess/exchange/foreign_runs.h"
 #include "libpreprocess/exchange/write_surfaces.h"
 #include "libpreprocess/prisms/lifelines.h"
 #include "libpreprocess/prisms/prism_error.h"
@@ -123,7 +124,7 @@ void Run::writePage(unsigned frame, const KeptNumbers& numbers, std::span<const 
   numbers.appendVertices(window_, frame, vertices);
   if (number + 1 == last_) numbers.appendVertices(window_, frame + 1, vertices);
   const std::uint64_t end = numbers.begin(window_.steps + 1) - numbers.begin(frame);
-  const std::vector<hypermesh::Run> runs = nameForeign(page.tets, owned, end, writer_.nextVertex());
+  const std::vector<hypermesh::Run> runs = exchange::nameForeign(page.tets, owned, end, writer_.nextVertex());
   for (const Vec4f& v : vertices) bounds_.add(v);
   writer_.setPageErrors(error > 0 ? static_cast<float>(stats_.tolerance) : 0.0F,
                         std::nextafter(static_cast<float>(error), error > 0 ? HUGE_VALF : 0.0F));

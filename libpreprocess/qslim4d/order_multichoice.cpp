@@ -1,0 +1,107 @@
+// The best of a few random edges, again and again: no order is kept, so nothing has to be brought up to date.
+// Wu & Kobbelt 2002; Vo et al. 2005; Ponchio & Hormann 2008, sec. 5.
+#include <algorithm>
+
+#include "libpreprocess/qslim4d/orders.h"
+
+namespace tet4d::qslim4d {
+namespace {
+
+constexpr std::uint64_t kTellEvery = 4096;  // draws
+// So many draws in a row without an allowed collapse, for each edge that is left, end the run.
+constexpr std::uint64_t kPatience = 4;
+
+// PCG (O'Neill 2014): small, and the same everywhere.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed + 0x9E3779B97F4A7C15U) { next(); }
+  std::uint32_t next() {
+    const std::uint64_t old = state_;
+    state_ = old * 6364136223846793005U + 1442695040888963407U;
+    const auto shifted = static_cast<std::uint32_t>(((old >> 18) ^ old) >> 27);
+    const auto turn = static_cast<std::uint32_t>(old >> 59);
+    return shifted >> turn | shifted << (-turn & 31u);
+  }
+  // 0 .. below - 1.
+  std::uint32_t next(std::uint32_t below) { return static_cast<std::uint32_t>(std::uint64_t{next()} * below >> 32); }
+
+ private:
+  std::uint64_t state_;
+};
+
+class Multichoice {
+ public:
+  Multichoice(SlimMesh& mesh, const Options& options, Ledger& ledger)
+      : mesh_(mesh), options_(options), ledger_(ledger), collapser_(mesh, options.rules), random_(options.seed) {
+    for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet)
+      if (mesh.isLive(tet)) live_.push_back(tet);
+  }
+
+  void run() {
+    std::uint64_t in_vain = 0;
+    while (!ledger_.isDone() && in_vain <= kPatience * mesh_.live_tets) {
+      if (ledger_.stats.rounds++ % kTellEvery == 0) ledger_.tell();
+      if (live_.size() > 2 * mesh_.live_tets) forgetDead();
+      in_vain = drawAndCollapse() ? 0 : in_vain + options_.choices;
+    }
+  }
+
+ private:
+  struct Choice {
+    Placement placement;
+    std::uint32_t u, v;
+  };
+
+  void forgetDead() {
+    std::erase_if(live_, [&](std::uint32_t tet) { return !mesh_.isLive(tet); });
+  }
+
+  // An edge of a random tetrahedron: edges of many tetrahedra come up more often, and their collapses save more.
+  std::pair<std::uint32_t, std::uint32_t> randomEdge() {
+    static constexpr std::uint8_t kEnds[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    for (;;) {
+      const std::uint32_t tet = live_[random_.next(static_cast<std::uint32_t>(live_.size()))];
+      const auto& ends = kEnds[random_.next(6)];
+      if (!mesh_.isLive(tet)) continue;
+      const std::uint32_t a = mesh_.tets[tet][ends[0]], b = mesh_.tets[tet][ends[1]];
+      return {std::min(a, b), std::max(a, b)};
+    }
+  }
+
+  bool drawAndCollapse() {
+    choices_.clear();
+    for (std::uint64_t i = 0; i < options_.choices; ++i) {
+      const auto [u, v] = randomEdge();
+      Placement placement;
+      if (collapser_.evaluate(u, v, placement) && ledger_.isAllowed(placement)) choices_.push_back({placement, u, v});
+    }
+    std::sort(choices_.begin(), choices_.end(), [](const Choice& a, const Choice& b) {
+      if (a.placement.cost != b.placement.cost) return a.placement.cost < b.placement.cost;
+      return std::pair(a.u, a.v) < std::pair(b.u, b.v);
+    });
+    // The cheapest only: taking the next one when it is not allowed would take dear edges where cheap ones are stuck.
+    if (choices_.empty()) return false;
+    const Choice& choice = choices_.front();
+    const Verdict verdict = collapser_.judge(choice.u, choice.v, choice.placement.at);
+    ledger_.judged(verdict);
+    if (verdict != Verdict::kAllowed) return false;
+    ledger_.collapsed(collapser_.collapse(choice.u, choice.v, choice.placement.at), choice.placement);
+    return true;
+  }
+
+  SlimMesh& mesh_;
+  const Options& options_;
+  Ledger& ledger_;
+  Collapser collapser_;
+  Random random_;
+  std::vector<std::uint32_t> live_;
+  std::vector<Choice> choices_;
+};
+
+}  // namespace
+
+void runMultichoice(SlimMesh& mesh, const Options& options, Ledger& ledger) {
+  if (mesh.live_tets > 0) Multichoice(mesh, options, ledger).run();
+}
+
+}  // namespace tet4d::qslim4d

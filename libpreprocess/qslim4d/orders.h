@@ -1,0 +1,41 @@
+// The three orders of collapses behind simplify(). Private to qslim4d.
+#pragma once
+
+#include "libpreprocess/qslim4d/simplify.h"
+
+namespace tet4d::qslim4d {
+
+// What every order counts and asks.
+class Ledger {
+ public:
+  Ledger(SlimMesh& mesh, const Options& options, outofcore::Progress& progress)
+      : mesh_(mesh), options_(options), progress_(progress), most_error_(options.most_error / mesh.space.cell) {
+    start_ = mesh.live_tets;
+  }
+  bool isDone() const { return mesh_.live_tets <= options_.target_tets; }
+  bool isAllowed(const Placement& placement) const { return placement.error <= most_error_; }
+  void judged(Verdict verdict) { ++stats.verdicts[static_cast<std::size_t>(verdict)]; }
+  void collapsed(std::uint32_t removed, const Placement& placement) {
+    mesh_.live_tets -= removed;
+    --mesh_.live_vertices;
+    ++stats.collapses;
+    stats.aligned += placement.aligned ? 1 : 0;
+    stats.largest_error = std::max(stats.largest_error, placement.error * mesh_.space.cell);
+  }
+  void tell() { progress_.step(start_ - mesh_.live_tets); }
+
+  Stats stats;
+
+ private:
+  SlimMesh& mesh_;
+  const Options& options_;
+  outofcore::Progress& progress_;
+  double most_error_;  // mean cells
+  std::uint64_t start_ = 0;
+};
+
+void runHeap(SlimMesh& mesh, const Options& options, Ledger& ledger);
+void runMultichoice(SlimMesh& mesh, const Options& options, Ledger& ledger);
+void runPasses(SlimMesh& mesh, const Options& options, outofcore::Executor& executor, Ledger& ledger);
+
+}  // namespace tet4d::qslim4d

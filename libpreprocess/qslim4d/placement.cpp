@@ -1,0 +1,162 @@
+#include "libpreprocess/qslim4d/placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace tet4d::qslim4d {
+namespace {
+
+// Share of the quadric's weight that pulls towards the edge's middle. Directions in which the surface is flat are ruled
+// by it (most vertices have a rank of 3 or less); others move by no more than this share.
+constexpr double kPull = 1e-3;
+// Share of the weight that an edge's squared length costs: orders collapses where the quadric says 0.
+constexpr double kTieBreak = 1e-6;
+
+// Everything is relative to u.
+class Place {
+ public:
+  Place(const Quadric& q, const Vec4f& u, const Vec4f& v, const Fixed& fixed, const Space& space)
+      : q_(q), u_(u), end_(difference(v, u)), fixed_(fixed), space_(space), length_(space.extent(end_)) {
+    const glm::dmat3 square = glm::transpose(space.axes) * space.axes;
+    const double pull = kPull * q.weight;
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) a_[i][j] = q.at(i, j);
+    }
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) pull_[i][j] = pull * square[i][j];
+    }
+    pull_[3][3] = pull * space.speed * space.speed;
+  }
+
+  // The minimum with the coordinates of `mask` as they are in `at`; nothing if the system is singular or the place lies
+  // too far off.
+  std::optional<glm::dvec4> minimum(unsigned mask, glm::dvec4 at) const;
+  double costAt(const glm::dvec4& at) const { return q_.value(at); }
+  double tieBreak() const { return kTieBreak * q_.weight * length_ * length_; }
+  // As a vertex of f32, fixed coordinates exact.
+  Vec4f vertexAt(const glm::dvec4& at) const {
+    std::array<float, 4> p{static_cast<float>(u_.x + at.x), static_cast<float>(u_.y + at.y),
+                           static_cast<float>(u_.z + at.z), static_cast<float>(u_.t + at.w)};
+    for (std::size_t c = 0; c < 4; ++c)
+      if ((fixed_.mask >> c & 1u) != 0) p[c] = fixed_.value[c];
+    return {p[0], p[1], p[2], p[3]};
+  }
+  glm::dvec4 withFixed(glm::dvec4 at) const {
+    const std::array<float, 4> u{u_.x, u_.y, u_.z, u_.t};
+    for (int c = 0; c < 4; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      if ((fixed_.mask >> i & 1u) != 0) at[c] = double{fixed_.value[i]} - double{u[i]};
+    }
+    return at;
+  }
+  const glm::dvec4& end() const { return end_; }
+
+ private:
+  bool isNear(const glm::dvec4& at) const {
+    const glm::dvec4 from_middle = at - 0.5 * end_;
+    return space_.extent(from_middle) <= 1.5 * length_;
+  }
+
+  const Quadric& q_;
+  const Vec4f& u_;
+  glm::dvec4 end_;
+  const Fixed& fixed_;
+  const Space& space_;
+  double length_;
+  double a_[4][4] = {};
+  double pull_[4][4] = {};
+};
+
+// (A + P) x = -b + P m on the free coordinates, by Gaussian elimination with pivots on the diagonal: the matrix is
+// positive definite, for the pull is.
+std::optional<glm::dvec4> Place::minimum(unsigned mask, glm::dvec4 at) const {
+  std::array<int, 4> free{};
+  int n = 0;
+  for (int c = 0; c < 4; ++c)
+    if ((mask >> c & 1u) == 0) free[static_cast<std::size_t>(n++)] = c;
+  double m[4][5];
+  for (int i = 0; i < n; ++i) {
+    const int row = free[static_cast<std::size_t>(i)];
+    double right = -q_.b[row];
+    for (int c = 0; c < 4; ++c) {
+      right += pull_[row][c] * 0.5 * end_[c];
+      if ((mask >> c & 1u) != 0) right -= (a_[row][c] + pull_[row][c]) * at[c];
+    }
+    for (int j = 0; j < n; ++j) {
+      const int column = free[static_cast<std::size_t>(j)];
+      m[i][j] = a_[row][column] + pull_[row][column];
+    }
+    m[i][n] = right;
+  }
+  for (int k = 0; k < n; ++k) {
+    if (!(m[k][k] > 0)) return std::nullopt;
+    for (int i = k + 1; i < n; ++i) {
+      const double factor = m[i][k] / m[k][k];
+      for (int j = k; j <= n; ++j) m[i][j] -= factor * m[k][j];
+    }
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    double sum = m[k][n];
+    for (int j = k + 1; j < n; ++j) sum -= m[k][j] * at[free[static_cast<std::size_t>(j)]];
+    at[free[static_cast<std::size_t>(k)]] = sum / m[k][k];
+  }
+  for (int c = 0; c < 4; ++c)
+    if (!std::isfinite(at[c])) return std::nullopt;
+  if (!isNear(at)) return std::nullopt;
+  return at;
+}
+
+struct Best {
+  glm::dvec4 at{0};
+  double cost = 0;
+  bool found = false;
+  void offer(const glm::dvec4& place, double place_cost) {
+    if (found && place_cost >= cost) return;
+    at = place, cost = place_cost, found = true;
+  }
+};
+
+// Times at which a place counts as aligned: the ends', and a frame's between them.
+struct AlignedTimes {
+  std::array<double, 3> t{};
+  std::size_t count = 0;
+};
+
+AlignedTimes alignedTimes(const Vec4f& u, const Vec4f& v) {
+  AlignedTimes times{{0.0, double{v.t} - double{u.t}, 0.0}, u.t == v.t ? std::size_t{1} : std::size_t{2}};
+  const double frame = std::nearbyint(0.5 * (double{u.t} + double{v.t}));
+  if (frame > std::min(u.t, v.t) && frame < std::max(u.t, v.t)) times.t[times.count++] = frame - double{u.t};
+  return times;
+}
+
+}  // namespace
+
+Placement placeVertex(const Quadric& q, const Vec4f& u, const Vec4f& v, const Fixed& fixed, double align,
+                      const Space& space) {
+  constexpr unsigned kTime = 1u << 3;
+  const Place place(q, u, v, fixed, space);
+  Best aligned, any;
+  for (const glm::dvec4& end : {glm::dvec4(0), place.end()}) {
+    const glm::dvec4 at = place.withFixed(end);
+    // An end that a wall moves away from its own place need not be one of the aligned ones.
+    aligned.offer(at, place.costAt(at));
+  }
+  const bool time_is_fixed = (fixed.mask & kTime) != 0;
+  const AlignedTimes times = alignedTimes(u, v);
+  for (std::size_t i = 0; i < (time_is_fixed ? 1 : times.count); ++i) {
+    glm::dvec4 start(0);
+    start.w = times.t[i];
+    if (const auto at = place.minimum(fixed.mask | kTime, place.withFixed(start)))
+      aligned.offer(*at, place.costAt(*at));
+  }
+  if (!time_is_fixed && u.t != v.t) {
+    if (const auto at = place.minimum(fixed.mask, place.withFixed(glm::dvec4(0)))) any.offer(*at, place.costAt(*at));
+  }
+  const bool is_aligned = !any.found || aligned.cost <= (1 + align) * any.cost + place.tieBreak();
+  const Best& best = is_aligned ? aligned : any;
+  const double error = q.weight > 0 ? std::sqrt(best.cost / q.weight) : 0;
+  return {place.vertexAt(best.at), best.cost + place.tieBreak(), error, is_aligned};
+}
+
+}  // namespace tet4d::qslim4d
