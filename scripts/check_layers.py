@@ -22,7 +22,7 @@ ALLOWED = {
     "libpreprocess/outofcore": FORMATS + ["libpreprocess"],
     "libpreprocess/exchange": BASE,
     "libpreprocess/topology": BASE,
-    "libpreprocess/measure": BASE + ["libpreprocess/topology"],
+    "libpreprocess/measure": BASE + ["libpreprocess/topology", "libpreprocess/exchange"],
     "libpreprocess/hypermesh": BASE + ["libpreprocess/topology", "libpreprocess/exchange"],
     "libpreprocess/prisms": BASE + ["libpreprocess/topology", "libpreprocess/exchange"],
     "libpreprocess/qslim4d": BASE + ["libpreprocess/topology", "libpreprocess/exchange"],

@@ -9,6 +9,7 @@
 
 #include "formats/hypermesh.h"
 #include "libpreprocess/error.h"
+#include "libpreprocess/measure/slice_distance.h"
 #include "libpreprocess/qslim4d/mesh_file.h"
 #include "libpreprocess/qslim4d/simplify.h"
 #include "tools/common/cli.h"
@@ -21,7 +22,7 @@ struct Options {
   std::string input, metric = "slice", order = "passes", codec = "raw";
   std::optional<double> ratio, error, align_time;
   std::optional<std::uint64_t> tets;
-  std::uint64_t choices = 8, most_star = 80;
+  std::uint64_t choices = 8, most_star = 80, measure_times = 7;
 };
 
 void checkOptions(const Options& options) {
@@ -62,6 +63,23 @@ void warnOfLoss(cli::Session& session, const hypermesh::File& mesh) {
   std::string names;
   for (const ColumnEntry& column : mesh.columns()) names += (names.empty() ? "" : ", ") + std::string(column.name);
   session.warn(mesh.reader().path() + ": columns are not carried over: " + names);
+}
+
+// What the slices really lost, by a pass that knows nothing of quadrics.
+void measure(cli::Session& session, const hypermesh::File& reference, std::uint64_t times) {
+  const hypermesh::File result = unwrap(hypermesh::File::open(session.options().output));
+  const auto frames = measure::sampleFrames(reference, times);
+  measure::DistanceOptions options;
+  const measure::SliceDistance distance =
+      measure::compareSlices(result, reference, frames, options, session.executor(), session.progress());
+  session.stats().error("slice_rms_world", distance.rms);
+  session.stats().error("slice_p99_world", distance.p99);
+  session.stats().error("slice_max_world", distance.max);
+  session.stats().error("slice_volume_relative", distance.volume_error);
+  char text[160];
+  std::snprintf(text, sizeof text, "measured at %zu times: rms %.3g, 99 %% within %.3g, largest %.3g world units",
+                frames.size(), distance.rms, distance.p99, distance.max);
+  session.note(text);
 }
 
 void tell(cli::Session& session, const qslim4d::SlimMesh& mesh, const qslim4d::Stats& stats, std::uint64_t tets_in) {
@@ -124,6 +142,7 @@ int slim(cli::Session& session, const Options& options) {
   const cli::Input provenance{"hypermesh", digest};
   unwrap(writer.close(session.provenance({&provenance, 1})));
   tell(session, mesh, stats, tets_in);
+  if (options.measure_times > 0 && mesh.live_tets > 0) measure(session, file, options.measure_times);
   return 0;
 }
 
@@ -151,6 +170,8 @@ int main(int argc, char** argv) {
               &o.align_time)
       .option("--max-star", "N", "most tetrahedra at a vertex that a collapse may leave", &o.most_star)
       .heading("Output")
+      .option("--measure", "N", "compare slices at N times with the input's and print the distance; 0: do not",
+              &o.measure_times, cli::kKeepsResult)
       .option("--page-codec", "CODEC", "how pages are stored", cli::Choice{&o.codec, {"raw", "zstd"}})
       .heading("General")
       .common({cli::kOutputRequired, cli::kThreads, cli::kMemory, cli::kForce, cli::kDryRun, cli::kSeed, cli::kStats,

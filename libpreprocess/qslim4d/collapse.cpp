@@ -55,7 +55,8 @@ bool Collapser::evaluate(std::uint32_t u, std::uint32_t v, Placement& placement)
     if ((both >> (2 * c) & 3u) != 0) fixed.mask |= 1u << c;
   Quadric q = mesh_->quadrics[v].about(difference(mesh_->positions[u], mesh_->positions[v]));
   q.add(mesh_->quadrics[u]);
-  placement = placeVertex(q, mesh_->positions[u], mesh_->positions[v], fixed, rules_.align, mesh_->space);
+  placement =
+      placeVertex(q, mesh_->positions[u], mesh_->positions[v], fixed, rules_.align, rules_.frames, mesh_->space);
   return true;
 }
 

@@ -17,6 +17,7 @@ enum class Verdict { kAllowed, kWalls, kLinks, kFlip, kFlatTime, kStar };
 
 struct CollapseRules {
   double align = 0.25;           // see placeVertex()
+  bool frames = true;            // see placeVertex()
   std::uint32_t most_star = 80;  // tetrahedra at the new vertex, at most
 };
 

@@ -123,16 +123,16 @@ struct AlignedTimes {
   std::size_t count = 0;
 };
 
-AlignedTimes alignedTimes(const Vec4f& u, const Vec4f& v) {
+AlignedTimes alignedTimes(const Vec4f& u, const Vec4f& v, bool frames) {
   AlignedTimes times{{0.0, double{v.t} - double{u.t}, 0.0}, u.t == v.t ? std::size_t{1} : std::size_t{2}};
   const double frame = std::nearbyint(0.5 * (double{u.t} + double{v.t}));
-  if (frame > std::min(u.t, v.t) && frame < std::max(u.t, v.t)) times.t[times.count++] = frame - double{u.t};
+  if (frames && frame > std::min(u.t, v.t) && frame < std::max(u.t, v.t)) times.t[times.count++] = frame - double{u.t};
   return times;
 }
 
 }  // namespace
 
-Placement placeVertex(const Quadric& q, const Vec4f& u, const Vec4f& v, const Fixed& fixed, double align,
+Placement placeVertex(const Quadric& q, const Vec4f& u, const Vec4f& v, const Fixed& fixed, double align, bool frames,
                       const Space& space) {
   constexpr unsigned kTime = 1u << 3;
   const Place place(q, u, v, fixed, space);
@@ -143,7 +143,7 @@ Placement placeVertex(const Quadric& q, const Vec4f& u, const Vec4f& v, const Fi
     aligned.offer(at, place.costAt(at));
   }
   const bool time_is_fixed = (fixed.mask & kTime) != 0;
-  const AlignedTimes times = alignedTimes(u, v);
+  const AlignedTimes times = alignedTimes(u, v, frames);
   for (std::size_t i = 0; i < (time_is_fixed ? 1 : times.count); ++i) {
     glm::dvec4 start(0);
     start.w = times.t[i];

@@ -25,10 +25,10 @@ struct Placement {
   bool aligned = false;  // its time is that of an end or of a frame
 };
 
-// q: of both ends together, about u. align: a place aligned in time may cost (1 + align) times the free minimum.
-// Regularised: a place may not leave the box of the edge, widened by its length, and is never worse than the better
-// end. Deterministic; O(1).
-Placement placeVertex(const Quadric& q, const Vec4f& u, const Vec4f& v, const Fixed& fixed, double align,
+// q: of both ends together, about u. frames: whether a frame's time between the ends counts as aligned. align: a place
+// aligned in time may cost (1 + align) times the free minimum. Regularised: a place may not leave the box of the edge,
+// widened by its length, and is never worse than the better end. Deterministic; O(1).
+Placement placeVertex(const Quadric& q, const Vec4f& u, const Vec4f& v, const Fixed& fixed, double align, bool frames,
                       const Space& space);
 
 }  // namespace tet4d::qslim4d

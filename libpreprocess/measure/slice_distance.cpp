@@ -1,0 +1,77 @@
+#include "libpreprocess/measure/slice_distance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "formats/core/coordinates.h"
+#include "libpreprocess/exchange/slice_hypermesh.h"
+#include "libpreprocess/measure/slice_measures.h"
+
+namespace tet4d::measure {
+namespace {
+
+// A slice in world units, relative to the domain's corner: a far origin costs nothing.
+std::vector<Point3> toLengths(const SliceMesh& slice, const AffineMap& map, const Bounds4f& domain) {
+  std::vector<Point3> points;
+  points.reserve(slice.positions.size());
+  const std::array<double, 3> corner{domain.min.x, domain.min.y, domain.min.z};
+  for (const Vec3f& p : slice.positions) {
+    const std::array<double, 3> index{p.x - corner[0], p.y - corner[1], p.z - corner[2]};
+    Point3 world{};
+    for (std::size_t c = 0; c < 3; ++c)
+      world[c] = index[0] * map.axes[0][c] + index[1] * map.axes[1][c] + index[2] * map.axes[2][c];
+    points.push_back(world);
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<double> sampleFrames(const hypermesh::File& reference, std::size_t count) {
+  const double first = reference.header().domain.min.t, last = reference.header().domain.max.t;
+  std::vector<double> frames;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const double at = first + (last - first) * share;
+    const double whole = std::round(at);
+    // Off the middle between frames: there linear motion would hide an error of time.
+    const double frame = i % 2 == 0 ? whole : std::floor(at) + 0.37;
+    if (frame <= first || frame >= last) continue;
+    if (frames.empty() || frame > frames.back()) frames.push_back(frame);
+  }
+  if (frames.empty()) frames.push_back(0.5 * (first + last));
+  return frames;
+}
+
+SliceDistance compareSlices(const hypermesh::File& mesh, const hypermesh::File& reference,
+                            const std::vector<double>& frames, const DistanceOptions& options,
+                            outofcore::Executor& executor, outofcore::Progress& progress) {
+  SliceDistance result;
+  const AffineMap& map = reference.header().index_to_world;
+  double largest_volume = 0, largest_volume_error = 0;
+  progress.phase("measure", frames.size());
+  for (const double frame : frames) {
+    const SliceMesh a = exchange::sliceHypermesh(mesh, frame), b = exchange::sliceHypermesh(reference, frame);
+    const std::vector<Point3> pa = toLengths(a, map, reference.header().domain);
+    const std::vector<Point3> pb = toLengths(b, map, reference.header().domain);
+    const SurfaceDistance d = surfaceDistance({pa, a.triangles}, {pb, b.triangles}, options, executor);
+    SliceDifference slice{frame, d.rms(), d.p99(), d.max(), 0, 0, a.triangles.size(), b.triangles.size()};
+    const SliceMeasures ma = measureSlice(a.positions, a.triangles, map);
+    const SliceMeasures mb = measureSlice(b.positions, b.triangles, map);
+    if (ma.closed() && mb.closed()) {
+      slice.volume = ma.volume, slice.volume_reference = mb.volume;
+      largest_volume = std::max(largest_volume, std::abs(mb.volume));
+      largest_volume_error = std::max(largest_volume_error, std::abs(ma.volume - mb.volume));
+    }
+    result.rms += slice.rms / static_cast<double>(frames.size());
+    result.p99 = std::max(result.p99, slice.p99);
+    result.max = std::max(result.max, slice.max);
+    result.slices.push_back(slice);
+    progress.step(result.slices.size());
+  }
+  result.volume_error = largest_volume > 0 ? largest_volume_error / largest_volume : 0;
+  return result;
+}
+
+}  // namespace tet4d::measure
