@@ -6,7 +6,7 @@ quarter of the file, and compares every picture with the same film played withou
 must be the same, byte by byte; one that draws what has come (--arrival draw) must be the same wherever no page was
 absent. Pictures that differ end the script with 1. Times are told, not judged.
 
-usage: scripts/bench/playback_memory.py --bin build/release/tools --work FOLDER [--size 64] [--frames 321] [--table FILE]
+usage: scripts/bench/playback_memory.py --bin build/release/tools --work FOLDER [--size 64] [--frames 321] [--films forward,…] [--table FILE]
 """
 import argparse
 import json
@@ -65,7 +65,8 @@ def films(frames):
     return {
         "forward": f"0f:{last}f:0.5f",
         "backward": f"{last}f:0f:-0.5f",
-        "jumps": ",".join(f"{jumps.uniform(0, last):.3f}f" for _ in range(last)),
+        # Each time stays for four pictures, as under a hand that stops to look.
+        "jumps": ",".join(",".join(4 * [f"{jumps.uniform(0, last):.3f}f"]) for _ in range(last // 4)),
     }
 
 
@@ -75,6 +76,7 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, required=True)
     parser.add_argument("--size", type=int, default=64)
     parser.add_argument("--frames", type=int, default=321)
+    parser.add_argument("--films", default="forward,backward,jumps")
     parser.add_argument("--table", type=pathlib.Path)
     options = parser.parse_args()
     shutil.rmtree(options.work, ignore_errors=True)
@@ -87,6 +89,8 @@ def main():
             "|---|---|---|---|---|---|---|---|---|---|---|"]
     wrong = 0
     for name, times in films(options.frames).items():
+        if name not in options.films.split(","):
+            continue
         right, _ = play(options, options.work, "free", file, times)
         for arrival in ("wait", "draw"):
             words = ["--memory", memory, "--arrival", arrival, "--fps", "12"]
