@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "formats/page_layout.h"
 
 namespace tet4d::dyntri {
 namespace {
 
-constexpr std::array kOwned{kHeader, kTimes, paged::kPageTable};  // copied when a file is opened
-constexpr std::array kKnown{kHeader, kTimes, paged::kPages, paged::kPageTable};
+constexpr std::array kOwned{kHeader, kTimes, kColumns, kParts, paged::kPageTable};  // copied when a file is opened
+constexpr std::array kKnown{kHeader, kTimes, kColumns, kParts, paged::kPages, paged::kPageTable};
 
 bool anySet(std::span<const std::uint64_t> reserved) {
   return std::any_of(reserved.begin(), reserved.end(), [](auto r) { return r != 0; });
@@ -17,24 +19,35 @@ bool anySet(std::span<const std::uint64_t> reserved) {
 
 // What is wrong with a header, or null.
 const char* checkHeader(const Header& h) {
-  if (h.reserved0 != 0 || anySet(h.reserved1)) return "reserved bytes are not zero";
+  if (anySet(h.reserved)) return "reserved bytes are not zero";
   if (!isUsable(h.index_to_world)) return "the map to world coordinates is not usable";
   if (!page_layout::isProper(h.bounds)) return "the bounds are not finite or not ordered";
   if (!std::isfinite(h.last_time)) return "the last time is not finite";
   return nullptr;
 }
 
-// The header's sums against the page table's counts.
-Status checkSums(const container::Reader& reader, const Header& h, const paged::Pages& pages) {
+// Every geometry page, then its column pages; the header's sums against the page table's counts.
+Status checkPages(const container::Reader& reader, const Header& h, std::span<const paged::PageEntry> pages,
+                  std::span<const ColumnEntry> columns) {
+  const auto bad = [&](std::size_t i, const char* what) {
+    return reader.fault(paged::kPageTable, "page " + std::to_string(i) + " " + what);
+  };
   constexpr std::array<std::size_t, 3> kBytes{sizeof(Vec4f), sizeof(Edge), sizeof(Triangle)};
+  const std::size_t stride = 1 + columns.size();
+  if (pages.size() % stride != 0) return bad(pages.size(), "is missing");
   std::array<std::uint64_t, 3> sums{};
-  for (const paged::PageEntry& e : pages.entries()) {
-    if (e.kind != 0) return reader.fault(paged::kPageTable, "has a page of unknown kind");
-    if (e.counts[3] != 0) return reader.fault(paged::kPageTable, "has a fourth count that is not zero");
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (e.counts[i] > e.raw_bytes / kBytes[i])
-        return reader.fault(paged::kPageTable, "has a count beyond its page's size");
-      sums[i] += e.counts[i];
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    const paged::PageEntry& e = pages[i];
+    if (e.kind != i % stride) return bad(i, "is not of the kind expected there");
+    if (const std::size_t c = i % stride; c != 0) {
+      const std::uint64_t bytes = pages[i - c].counts[0] * columns[c - 1].components * sizeof(float);
+      if (e.raw_bytes != page_layout::columnBytes(bytes)) return bad(i, "has not the size of its column");
+      continue;
+    }
+    if (e.counts[3] != 0) return bad(i, "has a fourth count that is not zero");
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (e.counts[k] > e.raw_bytes / kBytes[k]) return bad(i, "has a count beyond its size");
+      sums[k] += e.counts[k];
     }
   }
   if (sums != std::array{h.vertices, h.edges, h.triangles}) {
@@ -64,9 +77,46 @@ const char* checkTriangles(const PageView& page) {
     const Lifespan& life = page.lifespans[i];
     if (life.begin != begin || life.end != end) return "a lifespan is not the intersection of its edges' intervals";
     if (!(begin < end)) return "a lifespan is empty";
-    if (i > 0 && life.begin < page.lifespans[i - 1].begin)
+    if (page.bands.empty() && i > 0 && life.begin < page.lifespans[i - 1].begin)
       return "triangles are not sorted by the begin of their lives";
   }
+  return nullptr;
+}
+
+// Every triangle of a band against the band's index.
+const char* checkAlive(const PageView& page, const Band& band) {
+  const auto index = page.index.subspan(band.first_interval, band.intervals);
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    if (index[i].first > index[i].last || index[i].last > band.count) return "an interval's run is out of range";
+    if (i > 0 && (index[i].first < index[i - 1].first || index[i].last < index[i - 1].last))
+      return "an interval's run begins or ends before that of the interval in front";
+  }
+  // Neither end of a run falls from one interval to the next, so a triangle's first and last interval decide.
+  const Intervals intervals(page.interval, band.intervals);
+  for (std::uint64_t k = 0; k < band.count; ++k) {
+    const Lifespan& life = page.lifespans[band.first + k];
+    if (k >= index[intervals.at(life.begin)].last || k < index[intervals.lastOf(life.end, page.interval)].first)
+      return "a triangle lives in an interval whose run does not hold it";
+  }
+  return nullptr;
+}
+
+// The bands' own numbers, before any is used.
+const char* checkBands(const PageView& page) {
+  std::uint64_t triangles = 0, intervals = 0;
+  for (const Band& band : page.bands) {
+    if (band.first != triangles || band.first_interval != intervals) return "a band does not follow the one before";
+    if (band.count == 0 || band.count > page.triangles.size() - triangles ||
+        band.count > std::numeric_limits<std::uint32_t>::max()) {
+      return "a band's triangles are none or out of range";
+    }
+    if (band.intervals == 0 || band.intervals > page.index.size() - intervals)
+      return "a band's intervals are none or out of range";
+    triangles += band.count;
+    intervals += band.intervals;
+  }
+  if (!page.bands.empty() && triangles != page.triangles.size()) return "its bands do not hold all triangles";
+  if (intervals != page.index.size()) return "its bands do not hold all intervals";
   return nullptr;
 }
 
@@ -86,6 +136,13 @@ const char* checkBounds(const PageView& page, const Bounds4f& box) {
 
 }  // namespace
 
+Lifespan unionOf(std::span<const Lifespan> lives) {
+  Lifespan whole{};
+  if (!lives.empty()) whole = lives[0];
+  for (const Lifespan& life : lives) whole = {std::min(whole.begin, life.begin), std::max(whole.end, life.end)};
+  return whole;
+}
+
 Result<PageView> validatePage(std::span<const std::byte> bytes, const paged::PageEntry& entry, const std::string& file,
                               std::size_t page) {
   const auto bad = [&](const char* what) {
@@ -104,12 +161,26 @@ Result<PageView> validatePage(std::span<const std::byte> bytes, const paged::Pag
   view.edges = parser.take<Edge>(h.edges);
   view.lifespans = parser.take<Lifespan>(h.triangles);
   view.triangles = parser.take<Triangle>(h.triangles);
+  view.bands = parser.take<Band>(h.bands);
+  view.index = parser.take<Alive>(h.intervals);
+  view.part = h.part;
+  if (h.triangles != 0) view.interval = {entry.bounds.min.t, entry.bounds.max.t};
   if (!parser.complete()) return bad("its size or padding does not fit its counts");
   for (const char* what : {checkBounds(view, entry.bounds), checkEdges(view)}) {
     if (what != nullptr) return bad(what);
   }
-  if (const char* what = checkTriangles(view)) return bad(what);
+  for (const char* what : {checkTriangles(view), checkBands(view)}) {
+    if (what != nullptr) return bad(what);
+  }
+  for (const Band& band : view.bands) {
+    if (const char* what = checkAlive(view, band)) return bad(what);
+  }
   return view;
+}
+
+std::uint64_t Intervals::lastOf(float end, const Lifespan& whole) const {
+  // The page's end may be the file's, at which lives are closed.
+  return end < whole.end ? at(std::nextafter(end, whole.begin)) : last_;
 }
 
 Result<File> File::open(const std::string& path) {
@@ -126,33 +197,79 @@ Result<File> File::open(const std::string& path) {
   auto times = reader.items<double>(kTimes);
   if (!times.ok()) return times.fault();
   file.times_ = times.value();
+  if (reader.find(kColumns) != nullptr) {
+    auto columns = reader.items<ColumnEntry>(kColumns);
+    if (!columns.ok()) return columns.fault();
+    file.columns_ = columns.value();
+    if (Status s = reader.verifySection(*reader.find(kColumns)); !s.ok()) return s.fault();
+  }
+  if (reader.find(kParts) != nullptr) {
+    auto parts = reader.items<PartEntry>(kParts);
+    if (!parts.ok()) return parts.fault();
+    file.parts_ = parts.value();
+    if (Status s = reader.verifySection(*reader.find(kParts)); !s.ok()) return s.fault();
+  }
   for (const std::uint32_t kind : {kHeader, kTimes}) {
     if (Status status = reader.verifySection(*reader.find(kind)); !status.ok()) return status.fault();
   }
   if (const char* what = checkHeader(*file.header_)) return reader.fault(kHeader, what);
   if (Status s = page_layout::checkTimes(file.times_, file.header_->frames, path); !s.ok()) return s.fault();
+  if (Status s = file.checkTable(); !s.ok()) return s.fault();
+  return file;
+}
+
+// Columns, parts and pages as the header says they are.
+Status File::checkTable() {
+  const container::Reader& reader = *reader_;
+  if (columns_.size() != header_->columns) {
+    return reader.fault(kColumns, "has " + std::to_string(columns_.size()) + " columns, the header says " +
+                                      std::to_string(header_->columns));
+  }
+  if (const char* what = checkColumns(columns_)) return reader.fault(kColumns, what);
+  if (parts_.size() != header_->parts) {
+    return reader.fault(
+        kParts, "has " + std::to_string(parts_.size()) + " parts, the header says " + std::to_string(header_->parts));
+  }
+  if (const char* what = checkParts(parts_)) return reader.fault(kParts, what);
+  if (reader.header().payload_version < 2 && (header_->columns != 0 || header_->parts != 0)) {
+    return reader.fault(kHeader, "has columns or parts, which version 1 does not know");
+  }
   auto pages = paged::Pages::open(reader);
   if (!pages.ok()) return pages.fault();
-  file.pages_ = pages.value();
-  if (Status status = checkSums(reader, *file.header_, file.pages_); !status.ok()) return status.fault();
-  return file;
+  pages_ = pages.value();
+  if (Status s = checkPages(reader, *header_, pages_.entries(), columns_); !s.ok()) return s;
+  for (std::size_t i = 0; !columns_.empty() && i < pages_.size(); i += tablePage(1)) {
+    geometry_.push_back(pages_.entries()[i]);
+  }
+  return {};
 }
 
 Status File::verify() const {
   if (Status status = reader_->verifyAll(); !status.ok()) return status;
   if (Status status = pages_.verifyPadding(); !status.ok()) return status;
   Bounds4f all;
-  for (std::size_t k = 0; k < pages_.size(); ++k) {
-    auto page = pages_.load(k);
+  for (std::size_t k = 0; k < geometryPages(); ++k) {
+    const auto bad = [&](std::size_t i, const char* what) {
+      return Fault{FaultCode::kBadInput, reader_->path(), "page " + std::to_string(i), what, "write the file again"};
+    };
+    auto page = loadGeometry(k);
     if (!page.ok()) return page.fault();
-    auto view = validatePage(page.value().bytes(), pages_.entries()[k], reader_->path(), k);
+    auto view = validatePage(page.value().bytes(), geometryEntry(k), reader_->path(), tablePage(k));
     if (!view.ok()) return view.fault();
     for (const Vec4f& v : view.value().vertices) all.add(v);
     for (const Lifespan& l : view.value().lifespans) {
-      if (l.end > header_->last_time) {
-        return Fault{FaultCode::kBadInput, reader_->path(), "page " + std::to_string(k),
-                     "a lifespan ends after the file's last time", "write the file again"};
-      }
+      if (l.end > header_->last_time) return bad(tablePage(k), "a lifespan ends after the file's last time");
+    }
+    if (view.value().part >= std::max<std::uint64_t>(1, header_->parts))
+      return bad(tablePage(k), "belongs to a part that is not there");
+    if (reader_->header().payload_version < 2 && !view.value().bands.empty())
+      return bad(tablePage(k), "has bands, which version 1 does not know");
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      auto column = loadColumn(c, k);
+      if (!column.ok()) return column.fault();
+      const std::uint64_t used = geometryEntry(k).counts[0] * columns_[c].components * sizeof(float);
+      if (!page_layout::allZero(column.value().bytes().subspan(used)))
+        return bad(tablePage(k) + 1 + c, "padding is not zero");
     }
   }
   if (const Bounds4f box = page_layout::stored(all); box.min != header_->bounds.min || box.max != header_->bounds.max) {
@@ -162,46 +279,60 @@ Status File::verify() const {
 }
 
 Result<Writer> Writer::create(const std::string& path, const Header& header, std::span<const double> times,
-                              paged::Codec codec, bool force) {
+                              paged::Codec codec, bool force, std::span<const Column> columns,
+                              std::span<const double> part_isovalues) {
+  const auto refused = [&](const char* place, const char* what) {
+    return Fault{FaultCode::kUsage, path, place, what, ""};
+  };
   Header checked = header;
   checked.bounds = page_layout::stored({});
-  if (const char* what = checkHeader(checked)) return Fault{FaultCode::kUsage, path, "section DHDR", what, ""};
+  if (const char* what = checkHeader(checked)) return refused("section DHDR", what);
   if (Status s = page_layout::checkTimes(times, times.size(), path); !s.ok()) return s.fault();
+  Writer writer;
+  writer.columns_ = columnEntries(columns);
+  if (const char* what = checkColumns(writer.columns_)) return refused("section COLS", what);
+  for (const double isovalue : part_isovalues) writer.parts_.push_back({isovalue, {}});
+  if (const char* what = checkParts(writer.parts_)) return refused("section PART", what);
   auto file = container::Writer::create(path, kPayload, kVersion, force);
   if (!file.ok()) return file.fault();
-  Writer writer;
   writer.file_ = std::make_unique<container::Writer>(std::move(file).value());
   writer.pages_ = std::make_unique<paged::PageWriter>(*writer.file_, codec);
   writer.header_.index_to_world = header.index_to_world;
   writer.header_.last_time = header.last_time;
   writer.header_.frames = times.size();
+  writer.header_.columns = static_cast<std::uint32_t>(columns.size());
+  writer.header_.parts = part_isovalues.size();
   writer.times_.assign(times.begin(), times.end());
   if (Status status = writer.pages_->begin(); !status.ok()) return status.fault();
   return writer;
 }
 
-Status Writer::addPage(const PageView& page, std::uint64_t tets, std::uint64_t empty) {
-  if (page.lifespans.size() != page.triangles.size()) {
-    return Fault{FaultCode::kUsage, file_->path(), "page " + std::to_string(pages_->entries().size()),
-                 "there must be one lifespan a triangle", ""};
+Status Writer::addPage(const PageView& page, std::uint64_t tets, std::uint64_t empty,
+                       std::span<const std::span<const float>> columns) {
+  const auto bad = [&](const char* what) {
+    return Fault{FaultCode::kUsage, file_->path(), "page " + std::to_string(pages_->entries().size()), what, ""};
+  };
+  if (page.lifespans.size() != page.triangles.size()) return bad("there must be one lifespan a triangle");
+  if (page.part >= std::max<std::size_t>(1, parts_.size())) return bad("belongs to a part that is not there");
+  if (columns.size() != columns_.size()) return bad("the columns are not those declared");
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (columns[c].size() != page.vertices.size() * columns_[c].components)
+      return bad("the columns do not fit the vertices");
   }
-  const PageHeader head{page.vertices.size(), page.edges.size(), page.triangles.size(), {}};
-  using page_layout::padded;
-  page_layout::Builder builder(padded(sizeof head) + padded(page.vertices.size_bytes()) +
-                               padded(page.edges.size_bytes()) + padded(page.lifespans.size_bytes()) +
-                               padded(page.triangles.size_bytes()));
-  builder.add<PageHeader>({&head, 1});
-  builder.add(page.vertices);
-  builder.add(page.edges);
-  builder.add(page.lifespans);
-  builder.add(page.triangles);
+  const PageHeader head{page.vertices.size(),
+                        page.edges.size(),
+                        page.triangles.size(),
+                        page.bands.size(),
+                        page.index.size(),
+                        page.part,
+                        {}};
   paged::PageEntry entry{};
   for (const Vec4f& v : page.vertices) entry.bounds.add(v);
   bounds_.add(entry.bounds);
   if (!page.lifespans.empty()) {  // the page's interval is when something is alive, not where its vertices lie
-    entry.bounds.min.t = page.lifespans.front().begin;
-    entry.bounds.max.t = entry.bounds.min.t;
-    for (const Lifespan& l : page.lifespans) entry.bounds.max.t = std::max(entry.bounds.max.t, l.end);
+    const Lifespan whole = unionOf(page.lifespans);
+    entry.bounds.min.t = whole.begin;
+    entry.bounds.max.t = whole.end;
   }
   entry.counts[0] = head.vertices;
   entry.counts[1] = head.edges;
@@ -212,7 +343,17 @@ Status Writer::addPage(const PageView& page, std::uint64_t tets, std::uint64_t e
   header_.triangles += head.triangles;
   header_.tets += tets;
   header_.empty += empty;
-  return pages_->add(builder.bytes(), entry);
+  const std::array parts{std::as_bytes(std::span(&head, 1)), std::as_bytes(page.vertices),  std::as_bytes(page.edges),
+                         std::as_bytes(page.lifespans),      std::as_bytes(page.triangles), std::as_bytes(page.bands),
+                         std::as_bytes(page.index)};
+  if (Status status = pages_->addParts(parts, entry); !status.ok()) return status;
+  static constexpr std::array<std::byte, page_layout::kPartAlignment> kNothing{};
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const auto values = columns[c].empty() ? std::span<const std::byte>(kNothing) : std::as_bytes(columns[c]);
+    entry.kind = static_cast<std::uint32_t>(1 + c);
+    if (Status status = pages_->addParts({&values, 1}, entry); !status.ok()) return status;
+  }
+  return {};
 }
 
 Status Writer::close(const std::string& provenance_json) {
@@ -220,6 +361,12 @@ Status Writer::close(const std::string& provenance_json) {
   if (Status status = pages_->end(); !status.ok()) return status;
   if (Status s = file_->add<Header>(kHeader, container::kSectionRequired, {&header_, 1}); !s.ok()) return s;
   if (Status s = file_->add<double>(kTimes, container::kSectionRequired, times_); !s.ok()) return s;
+  if (!columns_.empty()) {
+    if (Status s = file_->add<ColumnEntry>(kColumns, container::kSectionRequired, columns_); !s.ok()) return s;
+  }
+  if (!parts_.empty()) {
+    if (Status s = file_->add<PartEntry>(kParts, container::kSectionRequired, parts_); !s.ok()) return s;
+  }
   if (Status s = file_->add<char>(container::kProvenance, 0, provenance_json); !s.ok()) return s;
   return file_->close();
 }

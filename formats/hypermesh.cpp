@@ -24,20 +24,6 @@ const char* checkHeader(const MeshHeader& h) {
   return nullptr;
 }
 
-// A page is never empty, so that of a column without vertices is one part of zeros.
-std::uint64_t columnBytes(std::uint64_t bytes) {
-  return std::max<std::uint64_t>(page_layout::padded(bytes), page_layout::kPartAlignment);
-}
-
-// What is wrong with the parts, or null.
-const char* checkParts(std::span<const PartEntry> parts) {
-  for (const PartEntry& part : parts) {
-    if (anySet(part.reserved)) return "reserved bytes are not zero";
-    if (std::isinf(part.isovalue)) return "a part's isovalue is infinite";
-  }
-  return nullptr;
-}
-
 // Every geometry page, in the order of its vertices, then its column pages.
 Status checkPages(const container::Reader& reader, const MeshHeader& h, std::span<const paged::PageEntry> pages,
                   std::span<const ColumnEntry> columns) {
@@ -53,7 +39,7 @@ Status checkPages(const container::Reader& reader, const MeshHeader& h, std::spa
     const auto& counts = pages[i - i % stride].counts;
     if (const std::size_t c = i % stride; c != 0) {
       const std::uint64_t bytes = counts[1] * columns[c - 1].components * sizeof(float);
-      if (pages[i].raw_bytes != columnBytes(bytes)) return bad(i, "has not the size of its column");
+      if (pages[i].raw_bytes != page_layout::columnBytes(bytes)) return bad(i, "has not the size of its column");
       continue;
     }
     if (counts[0] != vertices) return bad(i, "does not continue the vertex numbers");

@@ -24,6 +24,7 @@
 #include "formats/columns.h"
 #include "formats/core/coordinates.h"
 #include "formats/paged.h"
+#include "formats/parts.h"
 
 namespace tet4d::hypermesh {
 
@@ -55,12 +56,7 @@ static_assert(sizeof(MeshHeader) == 256 && offsetof(MeshHeader, isovalue) == 192
               offsetof(MeshHeader, domain) == 128);
 
 using tet4d::ColumnEntry;
-
-struct PartEntry {
-  double isovalue;            // @0  NaN if there is none
-  std::uint64_t reserved[3];  // @8  zero
-};
-static_assert(sizeof(PartEntry) == 32);
+using tet4d::PartEntry;
 
 struct PageHeader {
   std::uint64_t first_vertex;  // @0  global number of the page's first own vertex

@@ -21,6 +21,11 @@ constexpr std::uint64_t padded(std::uint64_t bytes) {
   return (bytes + kPartAlignment - 1) / kPartAlignment * kPartAlignment;
 }
 
+// A page is never empty, so that of a column without vertices is one part of zeros.
+constexpr std::uint64_t columnBytes(std::uint64_t bytes) {
+  return std::max<std::uint64_t>(padded(bytes), kPartAlignment);
+}
+
 inline bool allZero(std::span<const std::byte> bytes) {
   return std::all_of(bytes.begin(), bytes.end(), [](std::byte b) { return b == std::byte{0}; });
 }

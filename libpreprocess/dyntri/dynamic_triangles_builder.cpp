@@ -7,167 +7,222 @@
 #include <numeric>
 
 #include "formats/core/tet_slice.h"
+#include "libpreprocess/dyntri/edge_numbers.h"
+#include "libpreprocess/dyntri/lifespan_bands.h"
 #include "libpreprocess/error.h"
 
 namespace tet4d::dyntri {
 namespace {
 
-using EdgeKey = std::uint64_t;  // earlier vertex in the high half, later one in the low half
+// What bands and index may take of a page, and what a page takes however small it is.
+constexpr std::uint64_t kBandBytesATet = 4, kFixedBytes = 16384;
 
-struct RawTriangle {
-  std::array<EdgeKey, 3> edges;
-  Lifespan life;
+// The triangles of a page in the order of its tetrahedra.
+struct RawTriangles {
+  std::vector<Triangle> triangles;  // edges by EdgeNumbers
+  std::vector<Lifespan> lives;
 };
 
+// How many triangles live at all, so that nothing grows.
+std::uint64_t countTriangles(std::span<const hypermesh::Tet> tets, std::span<const Vec4f> positions) {
+  std::uint64_t count = 0;
+  for (const hypermesh::Tet& tet : tets) {
+    const auto time = [&](std::size_t i) { return positions[tet[i]].t; };
+    const TimeOrder order = orderByTime(time(0), time(1), time(2), time(3));
+    for (const DynTriRule& rule : kDynTriRules) count += time(order.at[rule.begin]) < time(order.at[rule.end]) ? 1 : 0;
+  }
+  return count;
+}
+
 // The triangles of one tetrahedron that live at all.
-void appendTriangles(const hypermesh::Tet& tet, std::span<const Vec4f> positions, std::vector<RawTriangle>& out) {
+void appendTriangles(const hypermesh::Tet& tet, std::span<const Vec4f> positions, EdgeNumbers& edges,
+                     RawTriangles& out) {
   const auto time = [&](std::size_t i) { return positions[tet[i]].t; };
   const TimeOrder order = orderByTime(time(0), time(1), time(2), time(3));
+  constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
+  std::array<std::uint32_t, 6> numbers{};  // of the tetrahedron's edges, asked for when a triangle needs them
+  numbers.fill(kUnknown);
   for (const DynTriRule& rule : kDynTriRules) {
     const Lifespan life{time(order.at[rule.begin]), time(order.at[rule.end])};
     if (!(life.begin < life.end)) continue;
-    RawTriangle triangle{{}, life};
+    Triangle triangle{};
     for (std::size_t c = 0; c < 3; ++c) {
+      std::uint32_t& number = numbers[rule.edges[c]];
       const auto& ends = kTetEdges[rule.edges[c]];
-      triangle.edges[c] = EdgeKey{tet[order.at[ends[0]]]} << 32 | tet[order.at[ends[1]]];
+      if (number == kUnknown) number = edges.number(tet[order.at[ends[0]]], tet[order.at[ends[1]]]);
+      triangle[c] = number;
     }
-    if (order.odd) std::swap(triangle.edges[1], triangle.edges[2]);
-    out.push_back(triangle);
+    if (order.odd) std::swap(triangle[1], triangle[2]);
+    out.triangles.push_back(triangle);
+    out.lives.push_back(life);
   }
 }
 
-// Numbers keys 0, 1, … in the order in which they first appear: open addressing with linear probing, at most half full.
-// The numbers depend on the order of the calls alone, never on where the keys come to lie.
-class FirstUse {
- public:
-  FirstUse() : slots_(std::size_t{1} << kFirstBits, Slot{kFree, 0}) {}
-  // The number of `key`; `fresh` says that it was given just now.
-  std::uint32_t number(EdgeKey key, bool& fresh) {
-    std::size_t at = place(key);
-    fresh = slots_[at].key == kFree;
-    if (!fresh) return slots_[at].number;
-    if (2 * (std::size_t{next_} + 1) > slots_.size()) {
-      grow();
-      at = place(key);
-    }
-    slots_[at] = {key, next_};
-    return next_++;
+// Puts triangles and lifespans into the page in the order of their buckets, those of a bucket as they came.
+void sortByBucket(const RawTriangles& raw, std::span<const std::uint32_t> bucket, std::size_t buckets,
+                  BuiltPage& page) {
+  std::vector<std::uint64_t> place(buckets + 1);
+  for (const std::uint32_t b : bucket) ++place[b + 1];
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  page.lifespans.resize(raw.lives.size());
+  page.triangles.resize(raw.triangles.size());
+  for (std::size_t i = 0; i < bucket.size(); ++i) {
+    const std::uint64_t to = place[bucket[i]]++;
+    page.lifespans[to] = raw.lives[i];
+    page.triangles[to] = raw.triangles[i];
   }
-  // Bytes held at most for so many keys, while the table grows too.
-  static std::uint64_t boundMemory(std::uint64_t keys) {
-    return (std::max<std::uint64_t>(4 * keys, 1U << kFirstBits) * 3 / 2) * sizeof(Slot);
-  }
+}
 
- private:
-  // No edge joins the last possible vertex to itself.
-  static constexpr EdgeKey kFree = std::numeric_limits<EdgeKey>::max();
-  static constexpr unsigned kFirstBits = 10;
-  struct Slot {
-    EdgeKey key;
-    std::uint32_t number;
-  };
-
-  std::size_t place(EdgeKey key) const {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t at = (key ^ key >> 29) * 0x9E3779B97F4A7C15U >> 20 & mask;
-    while (slots_[at].key != kFree && slots_[at].key != key) at = (at + 1) & mask;
-    return at;
-  }
-  void grow() {
-    std::vector<Slot> old(2 * slots_.size(), {kFree, 0});
-    old.swap(slots_);
-    for (const Slot& slot : old) {
-      if (slot.key != kFree) slots_[place(slot.key)] = slot;
-    }
-  }
-
-  std::vector<Slot> slots_;
-  std::uint32_t next_ = 0;
-};
-
-}  // namespace
-
-BuiltPage buildPage(std::span<const hypermesh::Tet> tets, std::span<const Vec4f> positions) {
-  std::vector<RawTriangle> raw;
-  raw.reserve(3 * tets.size());
-  for (const hypermesh::Tet& tet : tets) appendTriangles(tet, positions, raw);
-  std::stable_sort(raw.begin(), raw.end(),
-                   [](const RawTriangle& a, const RawTriangle& b) { return a.life.begin < b.life.begin; });
-
-  FirstUse edge_numbers;
-  BuiltPage page;
-  page.tets = tets.size();
-  page.empty = boundTriangles(tets.size()) - raw.size();
-  page.lifespans.reserve(raw.size());
-  page.triangles.reserve(raw.size());
-  // Vertices are few and their numbers dense: a plain table names them.
-  std::vector<std::uint32_t> vertex_number(positions.size(), std::numeric_limits<std::uint32_t>::max());
-  const auto vertexNumber = [&](std::uint64_t local) {
+// Numbers edges and vertices anew, by first use in the order of the triangles.
+void numberByUse(std::span<const Edge> edges, std::span<const Vec4f> positions, BuiltPage& page) {
+  constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> edge_number(edges.size(), kUnknown), vertex_number(positions.size(), kUnknown);
+  page.edges.reserve(edges.size());
+  const auto vertexNumber = [&](std::uint32_t local) {
     std::uint32_t& number = vertex_number[local];
-    if (number == std::numeric_limits<std::uint32_t>::max()) {
+    if (number == kUnknown) {
       number = static_cast<std::uint32_t>(page.vertices.size());
       page.vertices.push_back(positions[local]);
+      page.locals.push_back(local);
     }
     return number;
   };
-  for (const RawTriangle& triangle : raw) {
-    Triangle corners{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      bool fresh = false;
-      corners[c] = edge_numbers.number(triangle.edges[c], fresh);
-      if (!fresh) continue;
-      const std::uint32_t a = vertexNumber(triangle.edges[c] >> 32);
-      page.edges.push_back({a, vertexNumber(triangle.edges[c] & 0xFFFFFFFFu)});
+  for (Triangle& triangle : page.triangles) {
+    for (std::uint32_t& edge : triangle) {
+      std::uint32_t& number = edge_number[edge];
+      if (number == kUnknown) {
+        number = static_cast<std::uint32_t>(page.edges.size());
+        const std::uint32_t a = vertexNumber(edges[edge].a);
+        page.edges.push_back({a, vertexNumber(edges[edge].b)});
+      }
+      edge = number;
     }
-    page.triangles.push_back(corners);
-    page.lifespans.push_back(triangle.life);
+  }
+}
+
+// Column c of the page's vertices, from that of the hypermesh's page.
+std::vector<float> pickRows(std::span<const float> values, std::span<const std::uint32_t> locals,
+                            std::size_t components) {
+  std::vector<float> rows;
+  rows.reserve(locals.size() * components);
+  for (const std::uint32_t local : locals) {
+    const auto row = values.subspan(local * components, components);
+    rows.insert(rows.end(), row.begin(), row.end());
+  }
+  return rows;
+}
+
+// One page of the hypermesh, with the columns chosen.
+BuiltPage buildPageOf(const hypermesh::File& mesh, std::size_t k, const BuildOptions& options) {
+  const auto gathered = unwrap(mesh.gather(k));
+  BuiltPage page = buildPage(gathered.view.tets, gathered.positions, options.bands);
+  page.part = gathered.view.header->part;
+  for (const std::size_t c : options.columns) {
+    const auto values = unwrap(mesh.gatherColumn(c, k, gathered.view));
+    page.columns.push_back(pickRows(values, page.locals, mesh.columns()[c].components));
   }
   return page;
 }
 
-std::uint64_t boundPageMemory(std::uint64_t tets, std::uint64_t vertices) {
-  // Raw triangles and the buffer of the stable sort (whose place the encoded page takes later), the page itself, the
-  // table of edges, of which a tetrahedron has six.
-  const std::uint64_t per_triangle = 2 * sizeof(RawTriangle) + sizeof(Lifespan) + sizeof(Triangle);
-  return boundTriangles(tets) * per_triangle + 2 * 6 * tets * sizeof(Edge) + FirstUse::boundMemory(6 * tets) +
-         vertices * (2 * sizeof(Vec4f) + 4) + tets * sizeof(hypermesh::Tet);
+// Bytes that a column page takes decoded, at most: of each of the columns.
+std::vector<std::uint64_t> decodedColumnBytes(const hypermesh::File& mesh, std::span<const std::size_t> columns) {
+  std::vector<std::uint64_t> most(columns.size());
+  const std::size_t stride = 1 + mesh.columns().size();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    for (std::size_t k = 0; k < mesh.geometryPages(); ++k) {
+      const paged::PageEntry& entry = mesh.pages().entries()[k * stride + 1 + columns[i]];
+      if (entry.codec != static_cast<std::uint32_t>(paged::Codec::kRaw)) most[i] = std::max(most[i], entry.raw_bytes);
+    }
+  }
+  return most;
 }
 
-std::uint64_t boundBuildMemory(const hypermesh::File& mesh, std::size_t pages_in_flight) {
+// Bytes of a page's columns: as gathered one by one, and as the page keeps them all.
+std::uint64_t boundColumnMemory(const hypermesh::File& mesh, std::uint64_t vertices,
+                                std::span<const std::size_t> columns, std::span<const std::uint64_t> decoded) {
+  std::uint64_t kept = 0, gathered = 0;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::uint64_t bytes = vertices * mesh.columns()[columns[i]].components * sizeof(float);
+    kept += bytes;
+    gathered = std::max(gathered, bytes + decoded[i]);
+  }
+  return kept + gathered;
+}
+
+}  // namespace
+
+BuiltPage buildPage(std::span<const hypermesh::Tet> tets, std::span<const Vec4f> positions, std::uint32_t bands) {
+  BuiltPage page;
+  page.tets = tets.size();
+  EdgeNumbers edges(positions.size());
+  {
+    RawTriangles raw;
+    const std::uint64_t count = countTriangles(tets, positions);
+    raw.triangles.reserve(count);
+    raw.lives.reserve(count);
+    for (const hypermesh::Tet& tet : tets) appendTriangles(tet, positions, edges, raw);
+    page.empty = boundTriangles(tets.size()) - count;
+    page.interval = unionOf(raw.lives);
+    BandPlan plan = planBands(raw.lives, page.interval, bands, kBandBytesATet * tets.size());
+    page.bands = std::move(plan.bands);
+    sortByBucket(raw, plan.bucket, plan.buckets, page);
+  }
+  numberByUse(edges.edges(), positions, page);
+  page.index = indexBands(page.bands, page.lifespans, page.interval);
+  return page;
+}
+
+void BuildStats::add(const BuiltPage& page) {
+  pages += 1;
+  tets += page.tets;
+  vertices += page.vertices.size();
+  edges += page.edges.size();
+  triangles += page.triangles.size();
+  empty += page.empty;
+  band_bytes += page.bands.size() * sizeof(Band) + page.index.size() * sizeof(Alive);
+}
+
+std::uint64_t boundPageMemory(std::uint64_t tets, std::uint64_t vertices) {
+  // As built and as sorted, with a bucket each; the encoded page and its copy take the place of the former later. Of
+  // edges a tetrahedron has six: the table of their numbers, then those of the page and their new numbers.
+  const std::uint64_t per_triangle = 2 * (sizeof(Lifespan) + sizeof(Triangle)) + 4;
+  const std::uint64_t edges = 6 * tets;
+  return boundTriangles(tets) * per_triangle + EdgeNumbers::boundMemory(edges, vertices) + edges * (sizeof(Edge) + 4) +
+         vertices * (3 * sizeof(Vec4f) + 3 * 4 + 4) + 3 * kBandBytesATet * tets + kFixedBytes;
+}
+
+std::uint64_t boundBuildMemory(const hypermesh::File& mesh, std::size_t pages_in_flight, const BuildOptions& options) {
+  const std::vector<std::uint64_t> decoded = decodedColumnBytes(mesh, options.columns);
   std::vector<std::uint64_t> pages;
   for (std::size_t k = 0; k < mesh.geometryPages(); ++k) {
     const auto& counts = mesh.geometryEntry(k).counts;
-    pages.push_back(boundPageMemory(counts[2], counts[1] + counts[3]));
+    const std::uint64_t vertices = counts[1] + counts[3];
+    pages.push_back(boundPageMemory(counts[2], vertices) + mesh.gatherBytes(k) +
+                    boundColumnMemory(mesh, vertices, options.columns, decoded));
   }
   const auto n = static_cast<std::ptrdiff_t>(std::min(pages_in_flight, pages.size()));
   std::partial_sort(pages.begin(), pages.begin() + n, pages.end(), std::greater<>());
   return std::accumulate(pages.begin(), pages.begin() + n, std::uint64_t{0});
 }
 
-BuildStats buildDynamicTriangles(const hypermesh::File& mesh, Writer& writer, outofcore::Executor& executor,
-                                 outofcore::MemoryBudget& memory, outofcore::Progress& progress) {
+BuildStats buildDynamicTriangles(const hypermesh::File& mesh, const BuildOptions& options, Writer& writer,
+                                 outofcore::Executor& executor, outofcore::MemoryBudget& memory,
+                                 outofcore::Progress& progress) {
   BuildStats stats;
   const std::size_t pages = mesh.geometryPages();
   std::size_t in_flight = executor.threads();
-  while (in_flight > 1 && boundBuildMemory(mesh, in_flight) > memory.available()) --in_flight;
-  const auto reserved = memory.reserve(boundBuildMemory(mesh, in_flight), "building the largest pages");
+  while (in_flight > 1 && boundBuildMemory(mesh, in_flight, options) > memory.available()) --in_flight;
+  const auto reserved = memory.reserve(boundBuildMemory(mesh, in_flight, options), "building the largest pages");
   progress.phase("build", pages);
   std::vector<BuiltPage> window(in_flight);
   for (std::size_t first = 0; first < pages; first += window.size()) {
     const std::size_t count = std::min(window.size(), pages - first);
-    executor.run(count, [&](std::size_t i) {
-      const auto gathered = unwrap(mesh.gather(first + i));
-      window[i] = buildPage(gathered.view.tets, gathered.positions);
-    });
+    executor.run(count, [&](std::size_t i) { window[i] = buildPageOf(mesh, first + i, options); });
     for (std::size_t i = 0; i < count; ++i) {
       BuiltPage& page = window[i];
-      unwrap(writer.addPage(page.view(), page.tets, page.empty));
-      stats.pages += 1;
-      stats.tets += page.tets;
-      stats.vertices += page.vertices.size();
-      stats.edges += page.edges.size();
-      stats.triangles += page.triangles.size();
-      stats.empty += page.empty;
+      const std::vector<std::span<const float>> columns(page.columns.begin(), page.columns.end());
+      unwrap(writer.addPage(page.view(), page.tets, page.empty, columns));
+      stats.add(page);
       page = {};
       progress.step(first + i + 1);
     }

@@ -43,10 +43,6 @@ double stepAt(std::span<const double> times, float t) {
 
 }  // namespace
 
-std::string columnName(const hypermesh::ColumnEntry& column) {
-  return {column.name, strnlen(column.name, sizeof column.name)};
-}
-
 void interpolateColumn(std::span<const float> values, std::span<const Vec4f> positions,
                        std::span<const std::array<std::uint32_t, 2>> ends, float t, MeshColumn& column) {
   const std::size_t n = column.components;

@@ -11,6 +11,7 @@
 #include "formats/core/coordinates.h"
 #include "formats/core/slicer.h"
 #include "formats/hypermesh.h"
+#include "libpreprocess/column_list.h"
 
 namespace tet4d::exchange {
 
@@ -25,7 +26,7 @@ struct MeshColumn {
 inline constexpr const char* kNormal = "normal";
 inline constexpr const char* kVelocity = "velocity";
 
-std::string columnName(const hypermesh::ColumnEntry& column);
+using tet4d::columnName;
 
 // Appends the values of slice vertices to `column`. values: components floats for each of `positions`; ends: of the
 // slice's vertices (TetSlicer::ends). The fraction is that of interpolateAt(): exact at both ends, computed from the

@@ -25,7 +25,7 @@ Foresight::Picture Foresight::look(std::size_t i) const {
     const std::optional<float> t = film_->times[i].frames[surface.source];
     if (!file.shown || !t) continue;
     picture.pages[surface.source] =
-        scene::choosePages(file.file->pages().entries(), *t, file.file->header().last_time, picture.list, surface);
+        scene::choosePages(file.file->geometryEntries(), *t, file.file->header().last_time, picture.list, surface);
   }
   return picture;
 }
@@ -40,7 +40,7 @@ const Foresight::Picture& Foresight::advance(std::size_t i) {
 
 std::vector<stream::Want> Foresight::wants(std::size_t file) const {
   if (film_->arrival == Arrival::kDraw) return wantsOfPace(file);
-  const auto entries = film_->files[file].file->pages().entries();
+  const auto entries = film_->files[file].file->geometryEntries();
   std::vector<bool> is_named(entries.size(), false);
   std::vector<stream::Want> wants;
   std::uint64_t bytes = 0;
@@ -69,7 +69,7 @@ std::vector<stream::Want> Foresight::wantsOfPace(std::size_t file) const {
   for (const scene::DrawSurface& surface : picture.list.surfaces) {
     if (surface.source != file) continue;
     const dyntri::File& data = *film_->files[file].file;
-    return scene::pagesAhead(data.pages().entries(), *t, data.header().last_time, playing, picture.list, surface);
+    return scene::pagesAhead(data.geometryEntries(), *t, data.header().last_time, playing, picture.list, surface);
   }
   return {};
 }

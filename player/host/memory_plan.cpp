@@ -49,7 +49,7 @@ MemoryPlan planMemory(const Film& film, const ContactSheet* sheet, bool is_gl) {
       const std::optional<float> t = film.times[i].frames[surface.source];
       if (!film.files[surface.source].shown || !t) continue;
       const dyntri::File& file = *film.files[surface.source].file;
-      const auto entries = file.pages().entries();
+      const auto entries = file.geometryEntries();
       for (const std::size_t page : scene::choosePages(entries, *t, file.header().last_time, list, surface)) {
         bytes += plan.copies * heldBytes(entries[page]);
         const std::uint64_t rows = (entries[page].counts[0] + entries[page].counts[1] + kRowTexels - 1) / kRowTexels;

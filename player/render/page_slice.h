@@ -19,19 +19,23 @@ struct PageSlice {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise from outside; no two corners alike
 };
 
-// Slices pages; keeps its table of keys between calls, so that a film does not allocate for every frame.
+// Slices pages; keeps its table of keys between calls: nothing is allocated or cleared for a slice.
 class PageSlicer {
  public:
-  // The triangles of the runs `items`, all of `page`, that are alive at t. O(triangles of the runs), memory
-  // O(edges + vertices).
+  // The triangles of the runs `items`, all of `page`, that are alive at t. with_areas: false leaves the areas zero.
+  // O(triangles of the runs), memory O(edges + vertices).
   void slice(const dyntri::PageView& page, std::span<const scene::DrawItem> items, float t, float last_t,
-             PageSlice& out);
+             PageSlice& out, bool with_areas = true);
 
  private:
-  void addTriangle(const dyntri::PageView& page, std::uint64_t triangle, float t, PageSlice& out);
+  void begin(const dyntri::PageView& page, PageSlice& out);
   std::uint32_t vertexOf(const dyntri::PageView& page, std::uint32_t edge, float t, PageSlice& out);
+  void addTriangles(const dyntri::PageView& page, std::span<const std::uint32_t> triangles, std::uint64_t first,
+                    float t, bool with_areas, PageSlice& out);
 
-  std::vector<std::uint32_t> vertex_of_key_;  // keys: the edges, then the vertices
+  // Keys: the edges, then the vertices. base_ + the slice's vertex; what is below base_ is left of earlier slices.
+  std::vector<std::uint32_t> vertex_of_key_;
+  std::uint32_t base_ = 1;
 };
 
 }  // namespace tet4d::render

@@ -5,7 +5,7 @@
 namespace tet4d::stream {
 
 PageSource::PageSource(const dyntri::File& file, std::uint64_t budget_bytes)
-    : file_(&file), budget_bytes_(budget_bytes), slots_(file.pages().size()) {}
+    : file_(&file), budget_bytes_(budget_bytes), slots_(file.geometryPages()) {}
 
 void PageSource::beginFrame() {
   ++frame_;
@@ -15,10 +15,11 @@ void PageSource::beginFrame() {
 Status PageSource::load(std::size_t page) {
   Slot& slot = slots_[page];
   if (!slot.is_resident) {
-    auto loaded = file_->pages().load(page);
+    auto loaded = file_->loadGeometry(page);
     if (!loaded.ok()) return loaded.fault();
     bytes_touched_ += loaded.value().touched();
-    auto view = dyntri::validatePage(loaded.value().bytes(), entry(page), file_->reader().path(), page);
+    auto view =
+        dyntri::validatePage(loaded.value().bytes(), entry(page), file_->reader().path(), file_->tablePage(page));
     if (!view.ok()) return view.fault();
     // A decoded page's bytes live on the heap, a raw one's in the mapping: moving PageBytes leaves the view valid.
     slot.bytes = std::move(loaded).value();

@@ -23,7 +23,7 @@ class PageSource final : public Residency {
   PageSource(const dyntri::File& file, std::uint64_t budget_bytes);
 
   std::size_t size() const { return slots_.size(); }
-  const paged::PageEntry& entry(std::size_t page) const { return file_->pages().entries()[page]; }
+  const paged::PageEntry& entry(std::size_t page) const { return file_->geometryEntry(page); }
 
   // A new frame begins: pages used by earlier frames may be evicted, bytesTouched() restarts at 0.
   void beginFrame();

@@ -7,7 +7,7 @@
 namespace tet4d::stream {
 
 Pager::Pager(const dyntri::File& file, const PagerOptions& options)
-    : visible_(file.pages().size(), nullptr), state_(std::make_unique<State>(file, options)) {}
+    : visible_(file.geometryPages(), nullptr), state_(std::make_unique<State>(file, options)) {}
 
 Pager::~Pager() = default;
 

@@ -63,7 +63,7 @@ struct Pager::State {
   std::uint64_t peak = 0, read = 0, unused = 0;
   std::size_t doomed = 0, freeing = 0;  // pages doomed on the way; threads that give buffers back
 
-  const paged::PageEntry& entry(std::size_t page) const { return file.pages().entries()[page]; }
+  const paged::PageEntry& entry(std::size_t page) const { return file.geometryEntry(page); }
   bool isCompressed(std::size_t page) const {
     return entry(page).codec != static_cast<std::uint32_t>(paged::Codec::kRaw);
   }

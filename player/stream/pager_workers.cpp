@@ -15,7 +15,7 @@ Fault noMemory(const std::string& path, std::size_t page, std::uint64_t bytes) {
 }  // namespace
 
 Pager::State::State(const dyntri::File& file_, const PagerOptions& options)
-    : file(file_), budget(options.budget_bytes), slots(file_.pages().size()) {
+    : file(file_), budget(options.budget_bytes), slots(file_.geometryPages()) {
   for (unsigned i = 0; i < std::max(options.io_threads, 1u); ++i) threads_.emplace_back([this] { readPages(); });
   for (unsigned i = 0; i < std::max(options.decode_threads, 1u); ++i) threads_.emplace_back([this] { decodePages(); });
 }
@@ -135,7 +135,7 @@ void Pager::State::readOne(Lock& lock, std::size_t page) {
   PageSlot& slot = slots[page];
   const auto bytes = isCompressed(page) ? slot.stored.bytes() : slot.decoded.bytes();
   lock.unlock();
-  const Status status = file.pages().readStored(page, bytes);
+  const Status status = file.pages().readStored(file.tablePage(page), bytes);
   lock.lock();
   lookAtFile(lock);
   if (status.ok()) {
@@ -170,8 +170,9 @@ void Pager::State::decodeOne(Lock& lock, std::size_t page) {
   Result<dyntri::PageView> view = dyntri::PageView{};
   lock.unlock();
   if (!is_hopeless) {
-    const Status status = file.pages().decode(page, stored, decoded);
-    view = status.ok() ? dyntri::validatePage(decoded, entry(page), file.reader().path(), page) : status.fault();
+    const Status status = file.pages().decode(file.tablePage(page), stored, decoded);
+    view = status.ok() ? dyntri::validatePage(decoded, entry(page), file.reader().path(), file.tablePage(page))
+                       : status.fault();
   }
   lock.lock();
   drop(slot.stored);

@@ -136,8 +136,25 @@ TEST(DynamicTriangles, EdgesAndLifespansHoldTheirPromises) {
     EXPECT_EQ(page.lifespans[i].begin, begin);
     EXPECT_EQ(page.lifespans[i].end, end);
     EXPECT_LT(begin, end);
-    EXPECT_LE(page.lifespans[i == 0 ? 0 : i - 1].begin, begin);
   }
+}
+
+// A hub with more edges than a chain holds: every edge is still one edge.
+TEST(DynamicTriangles, AHubOfManyEdgesNumbersEachOnce) {
+  constexpr std::uint32_t kRim = 400;
+  std::vector<Vec4f> positions{{0, 0, 0, 0}};
+  for (std::uint32_t i = 0; i < kRim; ++i)
+    positions.push_back({static_cast<float>(i), static_cast<float>(i * i % 97), 1, 1 + static_cast<float>(i % 5)});
+  std::vector<Tet> tets;
+  for (std::uint32_t i = 1; i + 2 <= kRim; ++i) tets.push_back({0, i, i + 1, i + 2});
+  const BuiltPage page = buildPage(tets, positions);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> unique;
+  std::size_t from_hub = 0;
+  for (const Edge& e : page.edges) {
+    EXPECT_TRUE(unique.insert({e.a, e.b}).second);
+    if (page.vertices[e.a].t == 0) ++from_hub;
+  }
+  EXPECT_EQ(from_hub, kRim);
 }
 
 // A prism chain: one tetrahedron over [0, 1] and its mirror image over [1, 2] share the face at t = 1.

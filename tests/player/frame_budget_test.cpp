@@ -165,7 +165,7 @@ TEST(PagesAhead, NamesWhatComesWithTheSecondsUntilThen) {
   const scene::WorldBox box = scene::worldBox(file.header().index_to_world, file.header().bounds);
   const scene::DrawList list = scene::makeDrawList(box, scene::defaultShot(box, 1.5), {}, true);
   const auto ask = [&](float t, const scene::Playing& playing) {
-    auto wants = scene::pagesAhead(file.pages().entries(), t, 8, playing, list, list.surfaces[0]);
+    auto wants = scene::pagesAhead(file.geometryEntries(), t, 8, playing, list, list.surfaces[0]);
     std::sort(wants.begin(), wants.end(), [](const auto& a, const auto& b) { return a.urgency < b.urgency; });
     return wants;
   };

@@ -40,7 +40,7 @@ TEST(PageSource, ReadsOnlyWhatIsLoaded) {
 TEST(PageSource, EvictsLeastRecentlyUsedDownToTheBudget) {
   const dyntri::File file = openFile(test::writeTestSphere("source_budget.t4d", 5));
   std::uint64_t largest = 0;
-  for (const auto& entry : file.pages().entries()) largest = std::max(largest, entry.raw_bytes);
+  for (const auto& entry : file.geometryEntries()) largest = std::max(largest, entry.raw_bytes);
   PageSource source(file, 2 * largest);
   for (const std::size_t page : {0U, 1U, 2U}) {
     source.beginFrame();
@@ -74,7 +74,7 @@ TEST(PageSource, DamagedPageIsAFaultThatNamesIt) {
   std::uint64_t offset = 0;
   {
     const dyntri::File file = openFile(path);
-    offset = file.pages().entries()[1].offset + 200;
+    offset = file.geometryEntries()[1].offset + 200;
   }
   std::fstream bytes(path, std::ios::in | std::ios::out | std::ios::binary);
   bytes.seekg(static_cast<std::streamoff>(offset));

@@ -24,11 +24,11 @@ dyntri::File openFile(const std::string& path) {
   return std::move(file).value();
 }
 
-std::uint64_t rawBytes(const dyntri::File& file, std::size_t page) { return file.pages().entries()[page].raw_bytes; }
+std::uint64_t rawBytes(const dyntri::File& file, std::size_t page) { return file.geometryEntries()[page].raw_bytes; }
 
 std::uint64_t largestPage(const dyntri::File& file) {
   std::uint64_t most = 0;
-  for (const auto& entry : file.pages().entries()) most = std::max(most, entry.raw_bytes);
+  for (const auto& entry : file.geometryEntries()) most = std::max(most, entry.raw_bytes);
   return (most + 4095) / 4096 * 4096;
 }
 
@@ -48,9 +48,9 @@ void settle(Pager& pager, std::uint64_t read) {
 }
 
 bool sameAsFile(const dyntri::File& file, const Pager& pager, std::size_t page) {
-  const auto loaded = file.pages().load(page);
+  const auto loaded = file.loadGeometry(page);
   if (!loaded.ok() || pager.resident(page) == nullptr) return false;
-  const auto view = dyntri::validatePage(loaded.value().bytes(), file.pages().entries()[page], "", page);
+  const auto view = dyntri::validatePage(loaded.value().bytes(), file.geometryEntries()[page], "", page);
   const dyntri::PageView& ours = *pager.resident(page);
   const auto same = [](auto a, auto b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
@@ -75,29 +75,29 @@ TEST(Pager, ReadsOnlyWhatIsWanted) {
   frame(pager, {2});
   EXPECT_TRUE(sameAsFile(file, pager, 2));
   EXPECT_EQ(pager.resident(1), nullptr);
-  EXPECT_EQ(pager.frameReads().touched, file.pages().entries()[2].bytes);
+  EXPECT_EQ(pager.frameReads().touched, file.geometryEntries()[2].bytes);
   frame(pager, {2});
   EXPECT_EQ(pager.frameReads().touched, 0u) << "a resident page is not read again";
-  EXPECT_EQ(pager.totals().read, file.pages().entries()[2].bytes);
+  EXPECT_EQ(pager.totals().read, file.geometryEntries()[2].bytes);
   EXPECT_EQ(pager.totals().unused, 0u);
 }
 
 TEST(Pager, BringsPagesInBeforeTheyAreNeeded) {
   const dyntri::File file = openFile(test::writeTestSphere("pager_ahead.t4d", 5));
   Pager pager(file, {});
-  const std::uint64_t first_two = file.pages().entries()[0].bytes + file.pages().entries()[1].bytes;
+  const std::uint64_t first_two = file.geometryEntries()[0].bytes + file.geometryEntries()[1].bytes;
   frame(pager, {0}, {1});
-  EXPECT_EQ(pager.frameReads().touched, file.pages().entries()[0].bytes);
+  EXPECT_EQ(pager.frameReads().touched, file.geometryEntries()[0].bytes);
   EXPECT_EQ(pager.frameReads().prefetched, 0u);
   settle(pager, first_two);
   while (pager.resident(1) == nullptr) {  // proved a little after it is read
     pager.beginFrame();
     std::this_thread::yield();
   }
-  EXPECT_EQ(pager.totals().unused, file.pages().entries()[1].bytes);
+  EXPECT_EQ(pager.totals().unused, file.geometryEntries()[1].bytes);
   frame(pager, {1});
-  EXPECT_EQ(pager.frameReads().touched, file.pages().entries()[1].bytes);
-  EXPECT_EQ(pager.frameReads().prefetched, file.pages().entries()[1].bytes);
+  EXPECT_EQ(pager.frameReads().touched, file.geometryEntries()[1].bytes);
+  EXPECT_EQ(pager.frameReads().prefetched, file.geometryEntries()[1].bytes);
   EXPECT_EQ(pager.totals().read, first_two);
   EXPECT_EQ(pager.totals().unused, 0u);
 }
@@ -118,7 +118,7 @@ TEST(Pager, WhatComesSoonIsNotDroppedForWhatComesLater) {
   const dyntri::File file = openFile(test::writeTestSphere("pager_thrash.t4d", 9));
   Pager pager(file, {3 * largestPage(file), 1, 1});
   std::uint64_t all = 0;
-  for (const auto& entry : file.pages().entries()) all += entry.bytes;
+  for (const auto& entry : file.geometryEntries()) all += entry.bytes;
   for (std::size_t page = 0; page < pager.size(); ++page) {
     std::vector<std::size_t> next(pager.size() - page - 1);
     std::iota(next.begin(), next.end(), page + 1);
@@ -238,10 +238,10 @@ TEST(PagerStiff, AFileCutOffWhileOpenIsAFaultNotASignal) {
   const dyntri::File file = openFile(path);
   Pager pager(file, {});
   frame(pager, {0});
-  std::filesystem::resize_file(path, file.pages().entries()[2].offset + 10);
+  std::filesystem::resize_file(path, file.geometryEntries()[2].offset + 10);
   frame(pager, {0, 1, 2, 3, 4});
   EXPECT_TRUE(pager.resident(0) != nullptr && pager.resident(1) != nullptr);
-  EXPECT_EQ(pager.resident(1)->triangles.size(), file.pages().entries()[1].counts[2]) << "the table is still there";
+  EXPECT_EQ(pager.resident(1)->triangles.size(), file.geometryEntries()[1].counts[2]) << "the table is still there";
   for (const std::size_t page : {2u, 3u, 4u}) {
     EXPECT_EQ(pager.resident(page), nullptr);
     ASSERT_NE(pager.faultOf(page), nullptr);

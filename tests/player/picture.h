@@ -32,7 +32,7 @@ class Stage {
   scene::DrawList list(float t) {
     scene::DrawList list = scene::makeDrawList(box, shot, format, smooth);
     const float last_t = file_->header().last_time;
-    const auto pages = scene::choosePages(file_->pages().entries(), t, last_t, list, list.surfaces[0]);
+    const auto pages = scene::choosePages(file_->geometryEntries(), t, last_t, list, list.surfaces[0]);
     source_->beginFrame();
     for (const std::size_t page : pages) EXPECT_TRUE(source_->load(page).ok());
     scene::chooseTriangles(*source_, pages, t, last_t, list.surfaces[0]);

@@ -79,7 +79,7 @@ TEST(DrawList, EmptyAndFlatBoxesGiveFiniteMatrices) {
 TEST(Chooser, PagesByHalfOpenIntervalsClosedAtTheLastTime) {
   const dyntri::File file = openFile(test::writeTestSphere("chooser_time.t4d", 4));
   const DrawList camera = cameraFor(file);
-  const auto at = [&](float t) { return choosePages(file.pages().entries(), t, 3, camera, camera.surfaces[0]); };
+  const auto at = [&](float t) { return choosePages(file.geometryEntries(), t, 3, camera, camera.surfaces[0]); };
   using Pages = std::vector<std::size_t>;
   EXPECT_EQ(at(0), Pages{0});
   EXPECT_EQ(at(0.999f), Pages{0});
@@ -101,7 +101,7 @@ TEST(Chooser, PagesOutsideTheViewAreCulled) {
   Shot shot = defaultShot(box, 1.6);
   const auto chosen = [&] {
     const DrawList camera = makeDrawList(box, shot, kFormat, true);
-    return choosePages(file.pages().entries(), 0.5f, 1, camera, camera.surfaces[0]);
+    return choosePages(file.geometryEntries(), 0.5f, 1, camera, camera.surfaces[0]);
   };
   using Pages = std::vector<std::size_t>;
   EXPECT_EQ(chosen(), (Pages{0, 1}));

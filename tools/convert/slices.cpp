@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/core/time_spec.h"
+#include "libpreprocess/column_list.h"
 #include "libpreprocess/exchange/printf_pattern.h"
 #include "libpreprocess/exchange/slice_hypermesh.h"
 #include "libpreprocess/exchange/write_mesh.h"
@@ -24,22 +25,9 @@ struct Contents {
   std::optional<std::size_t> normal;  // among wants.columns: the one that becomes the file's normals
 };
 
-std::string columnList(const hypermesh::File& mesh) {
-  std::string list;
-  for (const auto& column : mesh.columns()) list += (list.empty() ? "" : ", ") + exchange::columnName(column);
-  return list.empty() ? "it has no columns" : "it has " + list;
-}
-
-std::optional<std::size_t> findColumn(const hypermesh::File& mesh, const std::string& name) {
-  for (std::size_t c = 0; c < mesh.columns().size(); ++c) {
-    if (exchange::columnName(mesh.columns()[c]) == name) return c;
-  }
-  return std::nullopt;
-}
-
 // The column of three components with a meaning of its own, if the mesh has it.
 std::optional<std::size_t> findVectors(const hypermesh::File& mesh, const char* name) {
-  const auto found = findColumn(mesh, name);
+  const auto found = findColumn(mesh.columns(), name);
   return found && mesh.columns()[*found].components == 3 ? found : std::nullopt;
 }
 
@@ -51,34 +39,13 @@ std::size_t rankOf(std::vector<std::size_t>& columns, std::size_t c) {
   return columns.size() - 1;
 }
 
-std::vector<std::size_t> namedColumns(const hypermesh::File& mesh, const std::string& list) {
-  std::vector<std::size_t> columns;
-  if (list == "none") return columns;
-  if (list == "all") {
-    for (std::size_t c = 0; c < mesh.columns().size(); ++c) columns.push_back(c);
-    return columns;
-  }
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    const std::string name = list.substr(begin, end - begin);
-    begin = end + 1;
-    const auto found = findColumn(mesh, name);
-    if (!found) {
-      throw Error(FaultCode::kUsage, mesh.reader().path(), "--columns",
-                  "there is no column \"" + name + "\"; " + columnList(mesh),
-                  name == exchange::kVelocity ? "--velocity computes it" : "name one of those, all or none");
-    }
-    if (std::count(columns.begin(), columns.end(), *found) != 0) {
-      throw Error(FaultCode::kUsage, "", "--columns", "\"" + name + "\" is named twice", "name it once");
-    }
-    columns.push_back(*found);
-  }
-  return columns;
+const char* remedyOf(const std::string& name) {
+  return name == exchange::kVelocity ? "--velocity computes it" : nullptr;
 }
 
 Contents contentsOf(const hypermesh::File& mesh, const Options& options) {
   Contents contents;
-  contents.wants.columns = namedColumns(mesh, options.columns);
+  contents.wants.columns = namedColumns(mesh.columns(), options.columns, mesh.reader().path(), remedyOf);
   if (options.velocity) {
     if (const auto column = findVectors(mesh, exchange::kVelocity)) {
       rankOf(contents.wants.columns, *column);
@@ -100,7 +67,7 @@ Contents contentsOf(const hypermesh::File& mesh, const Options& options) {
   if (options.normals_from == "column") {
     if (!normal) {
       throw Error(FaultCode::kUsage, mesh.reader().path(), "--normals-from",
-                  "there is no column \"normal\" of three components; " + columnList(mesh),
+                  "there is no column \"normal\" of three components; " + columnsThere(mesh.columns()),
                   "make the hypermesh with --normals, or leave this out: --normals takes those of the slice");
     }
     contents.normal = rankOf(contents.wants.columns, *normal);

@@ -181,10 +181,20 @@ std::vector<BadFile> badMeshPages() {
 }
 
 // Offsets inside page 0 of triangles_one.t4d: 4 vertices, 6 edges, 4 lifespans and triangles.
-constexpr std::uint64_t kTriVertices = 64, kTriEdges = 128, kTriLives = 192, kTriTriangles = 256;
+constexpr std::uint64_t kTriVertices = 64, kTriEdges = 128, kTriLives = 192, kTriTriangles = 256, kTriBands = 320,
+                        kTriIndex = 384;
 
 std::vector<BadFile> badTriangles() {
-  using dyntri::Header, dyntri::PageHeader, dyntri::Edge, dyntri::Lifespan, dyntri::Triangle;
+  using dyntri::Header, dyntri::PageHeader, dyntri::Edge, dyntri::Lifespan, dyntri::Triangle, dyntri::Band,
+      dyntri::Alive;
+  const auto column = [](std::string name, std::string place, std::string what, bool at_open, auto forge) {
+    return BadFile{"triangles_column_" + name + ".t4d",
+                   "triangles_columns.t4d",
+                   at_open,
+                   std::move(place),
+                   std::move(what),
+                   forge};
+  };
   const auto header = [](std::string name, std::string what, auto forge, std::string place = "section DHDR") {
     return BadFile{
         "triangles_" + name + ".t4d", "triangles_one.t4d", true, std::move(place), std::move(what), [=](Image& i) {
@@ -200,8 +210,11 @@ std::vector<BadFile> badTriangles() {
         "triangles_page_" + name + ".t4d", "triangles_one.t4d", false, std::move(place), std::move(what), forge};
   };
   return {
-      header("reserved0", "reserved", [](Header& h) { h.reserved0 = 1; }),
-      header("reserved1", "reserved", [](Header& h) { h.reserved1[8] = 1; }),
+      header("reserved", "reserved", [](Header& h) { h.reserved[7] = 1; }),
+      header(
+          "columns", "the header says", [](Header& h) { h.columns = 1; }, "section COLS"),
+      header(
+          "parts", "the header says", [](Header& h) { h.parts = 1; }, "section PART"),
       header("map", "map", [](Header& h) { h.index_to_world.axes[1][1] = kNan64; }),
       header("bounds", "bounds", [](Header& h) { h.bounds.max.z = kInf; }),
       header("last_time_nan", "last time", [](Header& h) { h.last_time = kNan; }),
@@ -213,7 +226,7 @@ std::vector<BadFile> badTriangles() {
       table("pages_kind", "kind", [](paged::PageEntry& p) { p.kind = 7; }),
       table("pages_count_huge", "count beyond", [](paged::PageEntry& p) { p.counts[1] = kHuge; }),
       table("pages_count_4", "fourth", [](paged::PageEntry& p) { p.counts[3] = 1; }),
-      page("reserved", "reserved", [](Image& i) { i.inPage<PageHeader>(0, 0).reserved[4] = 1; }),
+      page("reserved", "reserved", [](Image& i) { i.inPage<PageHeader>(0, 0).reserved[1] = 1; }),
       page("counts", "counts differ", [](Image& i) { i.inPage<PageHeader>(0, 0).edges = 5; }),
       page("counts_both", "size or padding",
            [](Image& i) {
@@ -232,12 +245,53 @@ std::vector<BadFile> badTriangles() {
            [](Image& i) { i.inPage<Triangle>(0, kTriTriangles)[1] = i.inPage<Triangle>(0, kTriTriangles)[0]; }),
       page("life_longer", "intersection", [](Image& i) { i.inPage<Lifespan>(0, kTriLives).end += 0.125f; }),
       page("life_nan", "intersection", [](Image& i) { i.inPage<Lifespan>(0, kTriLives + 8).begin = kNan; }),
-      page("life_order", "sorted",
+      // Lives 0 .. 0.5, 0.5 .. 0.75 twice, 0.75 .. 1: one band of four, {0, 1}, {0, 3}, {1, 4}.
+      page("part", "part that is not there", [](Image& i) { i.inPage<PageHeader>(0, 0).part = 1; }),
+      page("bands_huge", "size or padding", [](Image& i) { i.inPage<PageHeader>(0, 0).bands = kHuge; }),
+      page("intervals_huge", "size or padding", [](Image& i) { i.inPage<PageHeader>(0, 0).intervals = kHuge / 8; }),
+      page("intervals_more", "all intervals", [](Image& i) { i.inPage<PageHeader>(0, 0).intervals = 4; }),
+      page("band_gap", "follow", [](Image& i) { i.inPage<Band>(0, kTriBands).first = 1; }),
+      page("band_index_gap", "follow", [](Image& i) { i.inPage<Band>(0, kTriBands).first_interval = 1; }),
+      page("band_empty", "none or out of range", [](Image& i) { i.inPage<Band>(0, kTriBands).count = 0; }),
+      page("band_short", "all triangles", [](Image& i) { i.inPage<Band>(0, kTriBands).count = 3; }),
+      page("band_long", "triangles are none or out", [](Image& i) { i.inPage<Band>(0, kTriBands).count = 5; }),
+      page("band_intervals_0", "intervals are none", [](Image& i) { i.inPage<Band>(0, kTriBands).intervals = 0; }),
+      page("band_intervals_more", "intervals are none",
+           [](Image& i) { i.inPage<Band>(0, kTriBands).intervals = kHuge; }),
+      page("alive_beyond", "run is out of range", [](Image& i) { i.inPage<Alive>(0, kTriIndex + 16).last = 5; }),
+      page("alive_backward", "run is out of range", [](Image& i) { i.inPage<Alive>(0, kTriIndex).first = 2; }),
+      page("alive_falls", "interval in front", [](Image& i) { i.inPage<Alive>(0, kTriIndex).last = 4; }),
+      page("alive_cut", "does not hold it", [](Image& i) { i.inPage<Alive>(0, kTriIndex + 8).last = 2; }),
+      page("alive_late", "does not hold it", [](Image& i) { i.inPage<Alive>(0, kTriIndex + 16).first = 2; }),
+      page("unbanded_order", "sorted",
+           [](Image& i) {
+             i.inPage<PageHeader>(0, 0).bands = i.inPage<PageHeader>(0, 0).intervals = 0;
+             i.page(0).bytes = i.page(0).raw_bytes = kTriBands;
+             std::memset(&i.inPage<char>(0, kTriBands), 0, 128);
+             std::swap(i.inPage<Lifespan>(0, kTriLives), i.inPage<Lifespan>(0, kTriLives + 24));
+             std::swap(i.inPage<Triangle>(0, kTriTriangles), i.inPage<Triangle>(0, kTriTriangles + 36));
+           }),
+      page("version_1", "version 1", [](Image& i) { i.header().payload_version = 1; }),
+      page("life_order", "does not hold it",
            [](Image& i) {
              std::swap(i.inPage<Lifespan>(0, kTriLives), i.inPage<Lifespan>(0, kTriLives + 24));
              std::swap(i.inPage<Triangle>(0, kTriTriangles), i.inPage<Triangle>(0, kTriTriangles + 36));
            }),
       page("life_outside", "interval", [](Image& i) { i.page(0).bounds.max.t = 0.5f; }),
+      column("same_name", "section COLS", "same name", true,
+             [](Image& i) { i.item<ColumnEntry>(dyntri::kColumns, 1) = i.item<ColumnEntry>(dyntri::kColumns); }),
+      column("size", "section PTAB", "size of its column", true,
+             [](Image& i) { i.item<ColumnEntry>(dyntri::kColumns, 1).components = 1; }),
+      column("kind", "section PTAB", "kind", true, [](Image& i) { i.page(2).kind = 1; }),
+      column("missing", "section PTAB", "missing", true,
+             [](Image& i) {
+               i.sectionOf(paged::kPageTable).item_count -= 1;
+               i.sectionOf(paged::kPageTable).bytes -= sizeof(paged::PageEntry);
+             }),
+      column("padding", "page 1", "padding", false, [](Image& i) { i.inPage<char>(1, 8 * 4) = 1; }),
+      column("part_infinite", "section PART", "infinite", true,
+             [](Image& i) { i.item<PartEntry>(dyntri::kParts).isovalue = std::numeric_limits<double>::infinity(); }),
+      column("version", "section DHDR", "version 1", true, [](Image& i) { i.header().payload_version = 1; }),
       page("last_time", "last time", [](Image& i) { i.item<Header>(dyntri::kHeader).last_time = 0.5f; }),
       page(
           "box", "box of the vertices", [](Image& i) { i.item<Header>(dyntri::kHeader).bounds.min.x -= 1; },

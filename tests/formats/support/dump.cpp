@@ -115,7 +115,8 @@ Result<std::string> dump(const grid4::File& file) {
   return lines.take();
 }
 
-Status dumpColumns(const hypermesh::File& file, std::size_t k, std::size_t owned, Lines& lines) {
+template <class File>
+Status dumpColumns(const File& file, std::size_t k, std::size_t owned, Lines& lines) {
   for (std::size_t c = 0; c < file.columns().size(); ++c) {
     auto page = file.loadColumn(c, k);
     if (!page.ok()) return page.fault();
@@ -161,19 +162,29 @@ Result<std::string> dump(const dyntri::File& file) {
   lines.word("tets").number(h.tets).word("frames").number(h.frames).word("empty").number(h.empty);
   lines.word("last_time").number(h.last_time).end().map(h.index_to_world);
   lines.word("bounds").vec(h.bounds.min).vec(h.bounds.max).end().word("times").numbers(file.times()).end();
-  for (std::size_t k = 0; k < file.pages().size(); ++k) {
-    const auto& entry = file.pages().entries()[k];
-    auto page = file.pages().load(k);
+  for (const auto& c : file.columns()) lines.word("column").number(c.components).word(c.name).end();
+  for (const auto& p : file.parts()) lines.word("part").number(p.isovalue).end();
+  for (std::size_t k = 0; k < file.geometryPages(); ++k) {
+    const std::size_t number = k * (1 + file.columns().size());
+    auto page = file.loadGeometry(k);
     if (!page.ok()) return page.fault();
-    auto view = dyntri::validatePage(page.value().bytes(), entry, file.reader().path(), k);
-    if (!view.ok()) return view.fault();
-    lines.page(k, entry);
-    for (const Vec4f& v : view.value().vertices) lines.word("v").vec(v).end();
-    for (const auto& e : view.value().edges) lines.word("e").number(e.a).number(e.b).end();
-    for (std::size_t i = 0; i < view.value().triangles.size(); ++i) {
-      const auto& life = view.value().lifespans[i];
-      lines.word("tri").numbers(view.value().triangles[i]).word("life").number(life.begin).number(life.end).end();
+    auto loaded = dyntri::validatePage(page.value().bytes(), file.geometryEntry(k), file.reader().path(), number);
+    if (!loaded.ok()) return loaded.fault();
+    const dyntri::PageView& view = loaded.value();
+    lines.page(number, file.geometryEntry(k));
+    if (h.parts != 0) lines.word("of_part").number(view.part).end();
+    for (const Vec4f& v : view.vertices) lines.word("v").vec(v).end();
+    for (const auto& e : view.edges) lines.word("e").number(e.a).number(e.b).end();
+    for (std::size_t i = 0; i < view.triangles.size(); ++i) {
+      const auto& life = view.lifespans[i];
+      lines.word("tri").numbers(view.triangles[i]).word("life").number(life.begin).number(life.end).end();
     }
+    for (const auto& b : view.bands) {
+      lines.word("band").number(b.first).number(b.count).word("intervals").number(b.intervals).end();
+      for (const auto& run : view.index.subspan(b.first_interval, b.intervals))
+        lines.word("alive").number(run.first).number(run.last).end();
+    }
+    if (Status s = dumpColumns(file, k, view.vertices.size(), lines); !s.ok()) return s.fault();
   }
   return lines.take();
 }

@@ -79,6 +79,28 @@ Sheet makeSheet(std::size_t cells, std::size_t slabs) {
   return sheet;
 }
 
+namespace {
+
+// The triangles from `first` on, sorted by begin, as a band of three intervals. Its index by brute force.
+void addBand(TrianglePage& page, std::size_t first, const dyntri::Lifespan& whole) {
+  constexpr std::uint64_t kIntervals = 3;
+  const std::uint64_t count = page.lifespans.size() - first;
+  if (count == 0) return;
+  page.bands.push_back({first, count, page.index.size(), kIntervals});
+  const dyntri::Intervals intervals(whole, kIntervals);
+  for (std::uint64_t i = 0; i < kIntervals; ++i) {
+    dyntri::Alive run{static_cast<std::uint32_t>(count), 0};
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const dyntri::Lifespan& life = page.lifespans[first + k];
+      if (intervals.lastOf(life.end, whole) >= i) run.first = std::min(run.first, k);
+      if (intervals.at(life.begin) <= i) run.last = k + 1;
+    }
+    page.index.push_back({std::min(run.first, run.last), run.last});
+  }
+}
+
+}  // namespace
+
 TrianglePage trianglesOf(const std::vector<Vec4f>& positions, const std::vector<hypermesh::Tet>& tets) {
   TrianglePage page;
   page.vertices = positions;
@@ -109,9 +131,17 @@ TrianglePage trianglesOf(const std::vector<Vec4f>& positions, const std::vector<
   }
   std::stable_sort(built.begin(), built.end(),
                    [](const auto& a, const auto& b) { return a.first.begin < b.first.begin; });
-  for (const auto& [life, triangle] : built) {
-    page.lifespans.push_back(life);
-    page.triangles.push_back(triangle);
+  std::vector<dyntri::Lifespan> lives;
+  for (const auto& [life, triangle] : built) lives.push_back(life);
+  const dyntri::Lifespan whole = dyntri::unionOf(lives);
+  for (const bool is_long : {true, false}) {
+    const std::size_t first = page.lifespans.size();
+    for (const auto& [life, triangle] : built) {
+      if ((2 * (life.end - life.begin) > whole.end - whole.begin) != is_long) continue;
+      page.lifespans.push_back(life);
+      page.triangles.push_back(triangle);
+    }
+    addBand(page, first, whole);
   }
   return page;
 }
@@ -178,12 +208,29 @@ Status writeMesh(const std::string& path, const Sheet& sheet, paged::Codec codec
   return writer.value().close(kProvenanceText);
 }
 
-Status writeTriangles(const std::string& path, const Sheet& sheet, paged::Codec codec, bool gaps) {
+// `columns`: with a scalar and a vector per vertex. `parts`: its pages belong to two parts in turn.
+Status writeTriangles(const std::string& path, const Sheet& sheet, paged::Codec codec, bool gaps, bool columns = false,
+                      bool parts = false) {
   dyntri::Header header{};
   header.index_to_world = sheet.header.index_to_world;
   header.last_time = sheet.header.domain.max.t;
-  auto writer = dyntri::Writer::create(path, header, sheet.times, codec, true);
+  std::vector<Column> declared;
+  if (columns) declared = {{"pressure", 1}, {"velocity \xc3\xbc", 3}};
+  std::vector<double> isovalues;
+  if (parts) isovalues = {0.25, std::numeric_limits<double>::quiet_NaN()};
+  auto writer = dyntri::Writer::create(path, header, sheet.times, codec, true, declared, isovalues);
   if (!writer.ok()) return writer.fault();
+  std::size_t written = 0;
+  const auto add = [&](TrianglePage page, std::uint64_t tets) {
+    std::vector<float> pressure, velocity;
+    for (const Vec4f& v : page.vertices) {
+      pressure.push_back(v.x * 2);
+      velocity.insert(velocity.end(), {v.x, -v.y, std::numeric_limits<float>::infinity()});
+    }
+    page.part = parts ? written++ % 2 : 0;
+    const std::array<std::span<const float>, 2> values{pressure, velocity};
+    return writer.value().addPage(page.view(), tets, page.empty, std::span(values).first(declared.size()));
+  };
   const std::size_t pages = sheet.pages.size();
   for (std::size_t k = 0; k < pages; ++k) {
     std::vector<Vec4f> positions = sheet.pages[k].vertices;
@@ -191,11 +238,10 @@ Status writeTriangles(const std::string& path, const Sheet& sheet, paged::Codec 
       const auto& next = sheet.pages[k + 1].vertices;
       positions.insert(positions.end(), next.begin(), next.begin() + static_cast<std::ptrdiff_t>(run.count));
     }
-    const TrianglePage page = trianglesOf(positions, sheet.pages[k].tets);
     if (gaps) {
-      if (Status s = writer.value().addPage({}, 0, 0); !s.ok()) return s;
+      if (Status s = add({}, 0); !s.ok()) return s;
     }
-    if (Status s = writer.value().addPage(page.view(), sheet.pages[k].tets.size(), page.empty); !s.ok()) return s;
+    if (Status s = add(trianglesOf(positions, sheet.pages[k].tets), sheet.pages[k].tets.size()); !s.ok()) return s;
   }
   return writer.value().close(kProvenanceText);
 }
@@ -287,6 +333,10 @@ std::vector<Sample> allSamples() {
       {"triangles_one.t4d", dyntri::kPayload, true, [=](auto& p) { return writeTriangles(p, oneTet(), raw, false); }},
       {"triangles_empty.t4d", dyntri::kPayload, true,
        [=](auto& p) { return writeTriangles(p, withoutPages(), raw, false); }},
+      {"triangles_columns.t4d", dyntri::kPayload, true,
+       [=](auto& p) { return writeTriangles(p, makeSheet(1, 1), raw, false, true, true); }},
+      {"triangles_columns_zstd.t4d", dyntri::kPayload, false,
+       [=](auto& p) { return writeTriangles(p, makeSheet(3, 1), zstd, false, true, false); }},
       {"triangles_gaps_zstd.t4d", dyntri::kPayload, false,
        [=](auto& p) { return writeTriangles(p, makeSheet(2, 1), zstd, true); }},
       {"surface.t4q", surface_sequence::kPayload, true, [=](auto& p) { return writeSurfaces(p, 4, 3, raw, false); }},

@@ -42,13 +42,16 @@ const std::vector<Sample>& samples();
 const Sample& sampleNamed(const std::string& name);
 
 // The dynamic triangles of a page of a sheet, by the table of formats/core; positions: own vertices, then foreign ones.
+// In two bands: those that live longer than half the page's interval, and the others, three intervals each.
 struct TrianglePage {
   std::vector<Vec4f> vertices;
   std::vector<dyntri::Edge> edges;
   std::vector<dyntri::Lifespan> lifespans;
   std::vector<dyntri::Triangle> triangles;
-  std::uint64_t empty = 0;
-  dyntri::PageView view() const { return {vertices, edges, lifespans, triangles}; }
+  std::vector<dyntri::Band> bands;
+  std::vector<dyntri::Alive> index;
+  std::uint64_t empty = 0, part = 0;
+  dyntri::PageView view() const { return {vertices, edges, lifespans, triangles, bands, index, {}, part}; }
 };
 TrianglePage trianglesOf(const std::vector<Vec4f>& positions, const std::vector<hypermesh::Tet>& tets);
 
