@@ -117,7 +117,7 @@ void ViewerFiles::askForPages(ViewerFile& file, const Request& request, const sc
   const std::optional<float> t = scene::frameAt(file.file, request.time);
   if (!file.shown || !t) return file.pager->want({});
   const float last_t = file.file.header().last_time;
-  const auto entries = file.file.pages().entries();
+  const auto entries = file.file.geometryEntries();
   const std::vector<stream::Want> wants =
       scene::pagesAhead(entries, *t, last_t, playingOf(file.file, request.pace), list, surface);
   file.pager->want(wants);

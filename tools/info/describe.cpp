@@ -73,9 +73,9 @@ ordered_json columnsJson(std::span<const ColumnEntry> columns) {
 }
 
 // By number: what is at place i is part i.
-ordered_json partsJson(std::span<const hypermesh::PartEntry> parts) {
+ordered_json partsJson(std::span<const PartEntry> parts) {
   ordered_json out = ordered_json::array();
-  for (const hypermesh::PartEntry& part : parts)
+  for (const PartEntry& part : parts)
     out.push_back({{"isovalue", std::isnan(part.isovalue) ? ordered_json(nullptr) : ordered_json(part.isovalue)}});
   return out;
 }
@@ -111,6 +111,8 @@ void addPayload(ordered_json& out, const dyntri::File& file) {
   out["counts"] = {{"vertices", header.vertices}, {"edges", header.edges}, {"triangles", header.triangles},
                    {"tets", header.tets},         {"empty", header.empty}, {"frames", header.frames}};
   out["bounds"] = worldBounds(header.bounds, header.index_to_world, file.times());
+  out["columns"] = columnsJson(file.columns());
+  if (!file.parts().empty()) out["parts"] = partsJson(file.parts());
   out["index_to_world"] = mapJson(header.index_to_world);
 }
 
