@@ -52,6 +52,9 @@ MemoryPlan planMemory(const Film& film, const ContactSheet* sheet, bool is_gl) {
       const auto entries = file.geometryEntries();
       for (const std::size_t page : scene::choosePages(entries, *t, file.header().last_time, list, surface)) {
         bytes += plan.copies * heldBytes(entries[page]);
+        const std::size_t first = page * (1 + file.columns().size());
+        for (const std::size_t column : scene::columnsOf(film.files[surface.source]))
+          bytes += plan.copies * heldBytes(file.pages().entries()[first + 1 + column]);
         const std::uint64_t rows = (entries[page].counts[0] + entries[page].counts[1] + kRowTexels - 1) / kRowTexels;
         if (is_gl && film.smooth) plan.normals = std::max(plan.normals, rows * kRowTexels * kTexelBytes);
       }

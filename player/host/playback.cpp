@@ -145,6 +145,7 @@ Status play(const Film& film, std::span<stream::Pager* const> pagers, render::Re
             ContactSheet* sheet, const std::function<void(const FrameCost&)>& after, BudgetReport* report) {
   Foresight foresight(film);
   Economy economy(film);
+  for (std::size_t file = 0; file < pagers.size(); ++file) pagers[file]->useColumns(scene::columnsOf(film.files[file]));
   Clock::time_point due = Clock::now();
   for (std::size_t i = 0; i < film.times.size(); ++i) {
     if (film.arrival == Arrival::kDraw) {

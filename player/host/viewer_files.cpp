@@ -97,6 +97,7 @@ scene::DrawList ViewerFiles::list(const Request& request, const scene::Shot& sho
   for (std::size_t i = 0; i < files.size(); ++i) {
     list.surfaces[i].source = ranks[i];
     ViewerFile& file = *files_[ranks[i]];
+    file.pager->useColumns(scene::columnsOf(files[i]));
     file.pager->beginFrame();
     askForPages(file, request, list, list.surfaces[i], stats);
     for (Fault& fault : file.pager->takeFaults()) {

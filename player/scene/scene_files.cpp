@@ -85,4 +85,12 @@ DrawList makeDrawList(std::span<const SceneFile> files, const Shot& shot, const 
   return list;
 }
 
+std::vector<std::size_t> columnsOf(const SceneFile& file) {
+  std::vector<std::size_t> columns;
+  if (file.column) columns.push_back(file.column->column);
+  if (file.normal_column && (columns.empty() || columns[0] != *file.normal_column))
+    columns.push_back(*file.normal_column);
+  return columns;
+}
+
 }  // namespace tet4d::scene

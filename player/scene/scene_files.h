@@ -41,4 +41,7 @@ Material materialOf(std::span<const SceneFile> files, std::size_t i, const Shot&
 // `shot` as proved by parseShot() or made by defaultShot().
 DrawList makeDrawList(std::span<const SceneFile> files, const Shot& shot, const Format& format, bool smooth);
 
+// The columns that a file is drawn with, each once: what a pager has to bring in beside its pages.
+std::vector<std::size_t> columnsOf(const SceneFile& file);
+
 }  // namespace tet4d::scene

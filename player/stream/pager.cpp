@@ -1,15 +1,48 @@
 #include "player/stream/pager.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "player/stream/pager_state.h"
 
 namespace tet4d::stream {
 
 Pager::Pager(const dyntri::File& file, const PagerOptions& options)
-    : visible_(file.geometryPages(), nullptr), state_(std::make_unique<State>(file, options)) {}
+    : stride_(1 + file.columns().size()),
+      in_use_{0},
+      visible_(file.pages().size(), nullptr),
+      state_(std::make_unique<State>(file, options)) {}
 
 Pager::~Pager() = default;
+
+void Pager::useColumns(std::span<const std::size_t> columns) {
+  in_use_ = {0};
+  for (const std::size_t column : columns) {
+    assert(column + 1 < stride_);
+    in_use_.push_back(1 + column);
+  }
+}
+
+const dyntri::PageView* Pager::resident(std::size_t page) const {
+  const PageSlot* slot = visible_[page * stride_];
+  return slot == nullptr ? nullptr : &slot->view;
+}
+
+std::span<const float> Pager::residentColumn(std::size_t page, std::size_t column) const {
+  if (column + 1 >= stride_) return {};
+  const PageSlot* slot = visible_[page * stride_ + 1 + column];
+  return slot == nullptr ? std::span<const float>{} : slot->column;
+}
+
+// From pages to entries of the page table; from here on `page` is an entry.
+std::vector<Want> Pager::withColumns(std::span<const Want> wants) const {
+  std::vector<Want> all;
+  all.reserve(wants.size() * in_use_.size());
+  for (const Want& want : wants) {
+    for (const std::size_t part : in_use_) all.push_back({want.page * stride_ + part, want.urgency});
+  }
+  return all;
+}
 
 // With the mutex held: what has arrived becomes visible.
 void Pager::absorb() {
@@ -17,7 +50,7 @@ void Pager::absorb() {
     PageSlot& slot = state_->slots[page];
     slot.phase = Phase::kResident;
     state_->resident.push_back(page);
-    visible_[page] = &slot.view;
+    visible_[page] = &slot;
   }
   state_->arrived.clear();
 }
@@ -86,7 +119,7 @@ void Pager::keepWanted(std::vector<Want>& wants) {
 }
 
 void Pager::want(std::span<const Want> wants) {
-  std::vector<Want> sorted(wants.begin(), wants.end());
+  std::vector<Want> sorted = withColumns(wants);
   std::stable_sort(sorted.begin(), sorted.end(), [](const Want& a, const Want& b) { return a.urgency < b.urgency; });
   State& s = *state_;
   const std::scoped_lock lock(s.mutex);
@@ -134,20 +167,25 @@ void Pager::want(std::span<const Want> wants) {
 void Pager::waitFor(std::span<const std::size_t> pages) {
   State& s = *state_;
   std::unique_lock lock(s.mutex);
-  for (const std::size_t page : pages) {
-    PageSlot& slot = s.slots[page];
+  for (std::size_t i = 0; i < pages.size() * in_use_.size(); ++i) {
+    const std::size_t entry = pages[i / in_use_.size()] * stride_ + in_use_[i % in_use_.size()];
+    PageSlot& slot = s.slots[entry];
+    assert(slot.phase != Phase::kAbsent);
     s.arrival.wait(lock, [&] { return slot.phase >= Phase::kArrived; });
     absorb();
     if (slot.phase != Phase::kResident || slot.used) continue;
     slot.used = true;
-    frame_reads_.touched += s.entry(page).bytes;
+    frame_reads_.touched += s.entry(entry).bytes;
   }
 }
 
 const Fault* Pager::faultOf(std::size_t page) const {
   const std::scoped_lock lock(state_->mutex);
-  const auto found = state_->faults.find(page);
-  return found == state_->faults.end() ? nullptr : &found->second;  // entries stay where they are
+  for (const std::size_t part : in_use_) {
+    const auto found = state_->faults.find(page * stride_ + part);
+    if (found != state_->faults.end()) return &found->second;  // entries stay where they are
+  }
+  return nullptr;
 }
 
 std::vector<Fault> Pager::takeFaults() {

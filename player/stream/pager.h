@@ -24,6 +24,8 @@ struct PagerOptions {
   unsigned io_threads = 1, decode_threads = 1;  // at least 1
 };
 
+struct PageSlot;
+
 struct Want {
   std::size_t page = 0;
   double urgency = 0;  // time until it is needed, in any unit; 0: by this frame. Finite, not negative
@@ -37,7 +39,10 @@ class Pager final : public Residency {
   Pager(const Pager&) = delete;
   Pager& operator=(const Pager&) = delete;
 
-  std::size_t size() const { return visible_.size(); }
+  std::size_t size() const { return visible_.size() / stride_; }
+
+  // The columns that come with each page from now on, by number; none at first. Others are not read.
+  void useColumns(std::span<const std::size_t> columns);
 
   // A new frame: what has arrived shows, the counts of a frame restart. O(arrived).
   void beginFrame();
@@ -51,9 +56,10 @@ class Pager final : public Residency {
   // Waits until each of `pages`, all wanted with urgency 0, is resident or found damaged.
   void waitFor(std::span<const std::size_t> pages);
 
-  const dyntri::PageView* resident(std::size_t page) const override { return visible_[page]; }
+  const dyntri::PageView* resident(std::size_t page) const override;
+  std::span<const float> residentColumn(std::size_t page, std::size_t column) const override;
 
-  // Why a page cannot come in, or null. Such a page is not read again.
+  // Why a page, or a column in use of it, cannot come in, or null. It is not read again.
   const Fault* faultOf(std::size_t page) const;
   // Faults found since the last call, each page once; that the file was changed or replaced while open is among them
   // (kIo, no place), once.
@@ -78,8 +84,11 @@ class Pager final : public Residency {
   void absorb();
   bool makeRoom(std::uint64_t bytes);
   void keepWanted(std::vector<Want>& wants);
+  std::vector<Want> withColumns(std::span<const Want> wants) const;
 
-  std::vector<const dyntri::PageView*> visible_;  // the drawing thread's own: changes only in its calls
+  std::size_t stride_;                    // entries of the page table to a page: itself and its columns
+  std::vector<std::size_t> in_use_;       // of them, from 0: the page, then columns
+  std::vector<const PageSlot*> visible_;  // by entry; the drawing thread's own: changes only in its calls
   FrameReads frame_reads_;
   std::uint64_t frame_ = 1;
   std::unique_ptr<State> state_;

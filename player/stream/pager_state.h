@@ -31,15 +31,16 @@ struct PageSlot {
   bool used = false;         // by a frame, since it was read
   bool was_awaited = false;  // a frame needed it before it came
   double urgency = 0;
-  std::uint64_t wanted = 0;      // the call of want() that kept it last
-  std::uint64_t last_frame = 0;  // the frame that used it last
-  std::uint64_t charge = 0;      // bytes counted in `charged`
-  PageBuffer stored, decoded;    // stored: of compressed pages, until decoded
-  dyntri::PageView view;
+  std::uint64_t wanted = 0;       // the call of want() that kept it last
+  std::uint64_t last_frame = 0;   // the frame that used it last
+  std::uint64_t charge = 0;       // bytes counted in `charged`
+  PageBuffer stored, decoded;     // stored: of compressed pages, until decoded
+  dyntri::PageView view;          // of a page
+  std::span<const float> column;  // of a column's page
 };
 
 struct Pager::State {
-  State(const dyntri::File& file_, const PagerOptions& options);
+  State(const dyntri::File& source, const PagerOptions& options);
   ~State();
 
   const dyntri::File& file;
@@ -48,7 +49,7 @@ struct Pager::State {
   mutable std::mutex mutex;
   std::condition_variable to_read, to_decode, arrival;
   bool stopping = false, look_at_file = false, was_changed = false, was_replaced = false;
-  std::vector<PageSlot> slots;
+  std::vector<PageSlot> slots;          // by entry of the page table, as everything here
   std::vector<std::size_t> queue;       // kQueued, most urgent last
   std::vector<std::size_t> undecoded;   // kRead
   std::vector<std::size_t> on_the_way;  // kReading to kDecoding
@@ -63,7 +64,7 @@ struct Pager::State {
   std::uint64_t peak = 0, read = 0, unused = 0;
   std::size_t doomed = 0, freeing = 0;  // pages doomed on the way; threads that give buffers back
 
-  const paged::PageEntry& entry(std::size_t page) const { return file.geometryEntry(page); }
+  const paged::PageEntry& entry(std::size_t page) const { return file.pages().entries()[page]; }
   bool isCompressed(std::size_t page) const {
     return entry(page).codec != static_cast<std::uint32_t>(paged::Codec::kRaw);
   }
@@ -84,6 +85,7 @@ struct Pager::State {
   using Lock = std::unique_lock<std::mutex>;
   void readPages();
   void decodePages();
+  Status prove(std::size_t page);
   bool takeRoom(Lock& lock, std::size_t page);
   void readOne(Lock& lock, std::size_t page);
   void decodeOne(Lock& lock, std::size_t page);

@@ -14,8 +14,8 @@ Fault noMemory(const std::string& path, std::size_t page, std::uint64_t bytes) {
 
 }  // namespace
 
-Pager::State::State(const dyntri::File& file_, const PagerOptions& options)
-    : file(file_), budget(options.budget_bytes), slots(file_.geometryPages()) {
+Pager::State::State(const dyntri::File& source, const PagerOptions& options)
+    : file(source), budget(options.budget_bytes), slots(source.pages().size()) {
   for (unsigned i = 0; i < std::max(options.io_threads, 1u); ++i) threads_.emplace_back([this] { readPages(); });
   for (unsigned i = 0; i < std::max(options.decode_threads, 1u); ++i) threads_.emplace_back([this] { decodePages(); });
 }
@@ -135,7 +135,7 @@ void Pager::State::readOne(Lock& lock, std::size_t page) {
   PageSlot& slot = slots[page];
   const auto bytes = isCompressed(page) ? slot.stored.bytes() : slot.decoded.bytes();
   lock.unlock();
-  const Status status = file.pages().readStored(file.tablePage(page), bytes);
+  const Status status = file.pages().readStored(page, bytes);
   lock.lock();
   lookAtFile(lock);
   if (status.ok()) {
@@ -161,25 +161,36 @@ void Pager::State::decodePages() {
   }
 }
 
+// Without the mutex: checks and decodes an entry that was read, and hands out its spans once they are proved.
+Status Pager::State::prove(std::size_t page) {
+  PageSlot& slot = slots[page];
+  const std::span<std::byte> decoded = slot.decoded.bytes();
+  const std::span<const std::byte> stored = isCompressed(page) ? slot.stored.bytes() : decoded;
+  if (Status status = file.pages().decode(page, stored, decoded); !status.ok()) return status;
+  const std::size_t stride = 1 + file.columns().size(), part = page % stride;
+  if (part == 0) {
+    const auto view = dyntri::validatePage(decoded, entry(page), file.reader().path(), page);
+    if (!view.ok()) return view.fault();
+    slot.view = view.value();
+  } else {
+    // Its size was proved when the file was opened; its values may be any.
+    const std::uint64_t values = entry(page - part).counts[0] * file.columns()[part - 1].components;
+    slot.column = {reinterpret_cast<const float*>(decoded.data()), values};
+  }
+  return {};
+}
+
 void Pager::State::decodeOne(Lock& lock, std::size_t page) {
   PageSlot& slot = slots[page];
-  const bool is_compressed = isCompressed(page);
-  const std::span<std::byte> decoded = slot.decoded.bytes();
-  const std::span<const std::byte> stored = is_compressed ? slot.stored.bytes() : decoded;
   const bool is_hopeless = slot.doomed;
-  Result<dyntri::PageView> view = dyntri::PageView{};
+  Status proved;
   lock.unlock();
-  if (!is_hopeless) {
-    const Status status = file.pages().decode(file.tablePage(page), stored, decoded);
-    view = status.ok() ? dyntri::validatePage(decoded, entry(page), file.reader().path(), file.tablePage(page))
-                       : status.fault();
-  }
+  if (!is_hopeless) proved = prove(page);
   lock.lock();
   drop(slot.stored);
-  if (view.ok() && !slot.doomed && !is_hopeless) {
+  if (proved.ok() && !slot.doomed && !is_hopeless) {
     slot.charge -= storedCost(page);
     charged -= storedCost(page);
-    slot.view = view.value();
     slot.used = false;
     slot.phase = Phase::kArrived;
     leaveTheWay(page);
@@ -190,8 +201,8 @@ void Pager::State::decodeOne(Lock& lock, std::size_t page) {
   }
   unused += entry(page).bytes;
   drop(slot.decoded);
-  if (!view.ok()) {
-    fail(page, view.fault());
+  if (!proved.ok()) {
+    fail(page, proved.fault());
   } else if (slot.doomed) {
     abandon(page);
   } else {  // wanted again after it was passed over: it is read once more

@@ -186,6 +186,74 @@ TEST(Pager, DecodesCompressedPagesWithinTheBudget) {
   EXPECT_LE(pager.totals().peak, budget);
 }
 
+// Three pages with a column of one value and one of three; values tell page, column and row.
+std::string writeColumns(const std::string& name, paged::Codec codec) {
+  const std::vector<double> times{0, 1, 2, 3};
+  const std::vector<Column> columns{{"heat", 1}, {"normal", 3}};
+  dyntri::Header header{};
+  header.last_time = 3;
+  const std::string path = test::temporaryDirectory() + "/" + name;
+  auto writer = dyntri::Writer::create(path, header, times, codec, true, columns);
+  EXPECT_TRUE(writer.ok());
+  for (int k = 0; k < 3; ++k) {
+    const test::Page page = test::sweep(test::icosphere(1), test::kTestSphere.motion(), k, k + 1);
+    std::vector<float> heat(page.vertices.size()), normal(3 * page.vertices.size());
+    for (std::size_t i = 0; i < heat.size(); ++i) heat[i] = static_cast<float>(1000 * k) + static_cast<float>(i);
+    for (std::size_t i = 0; i < normal.size(); ++i) normal[i] = -static_cast<float>(i);
+    const std::vector<std::span<const float>> values{heat, normal};
+    EXPECT_TRUE(writer.value().addPage(page.view(), 1, 0, values).ok());
+  }
+  EXPECT_TRUE(writer.value().close("{}").ok());
+  return path;
+}
+
+TEST(Pager, ReadsOnlyTheColumnsInUse) {
+  for (const paged::Codec codec : {paged::Codec::kRaw, paged::Codec::kZstd}) {
+    if (!paged::hasCodec(codec)) continue;
+    const dyntri::File file = openFile(writeColumns("pager_columns.t4d", codec));
+    const auto entries = file.pages().entries();
+    ASSERT_EQ(entries.size(), 9u);
+    Pager pager(file, {});
+    ASSERT_EQ(pager.size(), 3u);
+    frame(pager, {1});
+    EXPECT_EQ(pager.totals().read, entries[3].bytes);
+    EXPECT_TRUE(pager.residentColumn(1, 0).empty());
+    const std::size_t normal[] = {1};
+    pager.useColumns(normal);
+    frame(pager, {1}, {2});
+    EXPECT_EQ(pager.frameReads().touched, entries[5].bytes);
+    EXPECT_TRUE(pager.residentColumn(1, 0).empty());
+    ASSERT_EQ(pager.residentColumn(1, 1).size(), 3 * pager.resident(1)->vertices.size());
+    EXPECT_EQ(pager.residentColumn(1, 1)[7], -7);
+    EXPECT_TRUE(pager.residentColumn(1, 2).empty()) << "no such column";
+    const std::size_t both[] = {0, 1};
+    pager.useColumns(both);
+    frame(pager, {2});
+    ASSERT_EQ(pager.residentColumn(2, 0).size(), pager.resident(2)->vertices.size());
+    EXPECT_EQ(pager.residentColumn(2, 0)[5], 2005);
+    EXPECT_EQ(pager.residentColumn(2, 1)[4], -4);
+    EXPECT_EQ(pager.totals().read,
+              entries[3].bytes + entries[5].bytes + entries[6].bytes + entries[7].bytes + entries[8].bytes);
+  }
+}
+
+TEST(PagerStiff, ADamagedColumnIsAFaultOfItsPageOnlyWhereItIsInUse) {
+  const std::string path = writeColumns("pager_column_damaged.t4d", paged::Codec::kRaw);
+  flipByte(path, openFile(path).pages().entries()[4].offset + 3);
+  const dyntri::File file = openFile(path);
+  Pager pager(file, {});
+  frame(pager, {1});
+  EXPECT_EQ(pager.faultOf(1), nullptr);
+  const std::size_t heat[] = {0};
+  pager.useColumns(heat);
+  frame(pager, {0, 1});
+  EXPECT_EQ(pager.faultOf(0), nullptr);
+  ASSERT_NE(pager.faultOf(1), nullptr);
+  EXPECT_EQ(pager.faultOf(1)->place, "page 4");
+  EXPECT_NE(pager.resident(1), nullptr) << "it is drawn without its column";
+  EXPECT_TRUE(pager.residentColumn(1, 0).empty());
+}
+
 TEST(PagerStiff, NoPagesAndOnePage) {
   const dyntri::File none = openFile(test::writeFile("pager_none.t4d", {}, {{}, {0, 1}, paged::Codec::kRaw}));
   Pager empty(none, {0, 1, 1});
