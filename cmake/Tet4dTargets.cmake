@@ -38,9 +38,18 @@ function(tet4d_add_library name)
 endfunction()
 
 # tet4d_add_program(<name> SOURCES <files...> DEPENDS <targets...>)
+# Installed with its man page and its completion of bash, which it prints itself once it is linked.
 function(tet4d_add_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE tet4d_options tet4d_warnings ${ARG_DEPENDS})
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  set(man ${PROJECT_BINARY_DIR}/share/man/man1)
+  set(completions ${PROJECT_BINARY_DIR}/share/bash-completion/completions)
+  file(MAKE_DIRECTORY ${man} ${completions})
+  add_custom_command(TARGET ${name} POST_BUILD
+                     COMMAND ${name} --print-man > ${man}/${name}.1
+                     COMMAND ${name} --print-completion > ${completions}/${name} VERBATIM)
+  install(FILES ${man}/${name}.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${completions}/${name} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 endfunction()

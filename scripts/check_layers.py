@@ -57,10 +57,11 @@ FOREIGN = {
     r"nlohmann/.*": ["libpreprocess/exchange", "libpreprocess/measure", "player/scene", "player/host", "tools/common",
                      "tools", "tools/tet4d-play"],
     r"fmt/.*": ["libpreprocess", "libpreprocess/*", "player/host", "tools/common", "tools", "tools/tet4d-play"],
+    r"cairo\.h": ["tools"],
     r"CGAL/.*|gtest/.*|gmock/.*|benchmark/.*": [],
 }
 
-SYSTEM = re.compile(r"[a-z_0-9]+|(sys|linux)/[a-z_]+\.h|(dlfcn|fcntl|unistd|dirent|poll|pthread|sched|signal|termios)\.h"
+SYSTEM = re.compile(r"[a-z_0-9]+|(sys|linux)/[a-z_]+\.h|(dlfcn|fcntl|unistd|dirent|poll|pthread|sched|signal|spawn|termios)\.h"
                     r"|(errno|stdint|stddef|string|stdio|stdlib|time|immintrin|emmintrin|getopt|malloc)\.h")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 SUFFIXES = {".h", ".cpp", ".inc", ".hpp", ".cc"}

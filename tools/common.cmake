@@ -4,8 +4,8 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 
 add_library(tet4d_cli STATIC
-  common/bindings.cpp common/command.cpp common/console_progress.cpp common/files.cpp common/memory_sampler.cpp common/nearest.cpp
-  common/parse.cpp common/run.cpp common/session.cpp)
+  common/bindings.cpp common/command.cpp common/completion.cpp common/console_progress.cpp common/files.cpp common/man_page.cpp
+  common/memory_sampler.cpp common/nearest.cpp common/parse.cpp common/run.cpp common/session.cpp)
 add_library(tet4d::cli ALIAS tet4d_cli)
 target_include_directories(tet4d_cli PUBLIC ${PROJECT_SOURCE_DIR})
 target_compile_definitions(tet4d_cli PRIVATE TET4D_VERSION="${PROJECT_VERSION}")

@@ -116,9 +116,12 @@ class Command {
   Command& common(std::initializer_list<Common> which);
   // A line shown at the end of --help.
   Command& note(std::string text);
+  // What the user writes behind the program's name to mean this command of several.
+  Command& subcommand(std::string word);
 
   const std::string& program() const { return program_; }
   const std::string& summary() const { return summary_; }
+  const std::string& word() const { return word_; }  // empty for the program's only command
   const std::vector<Example>& examples() const { return examples_; }
   const std::vector<Option>& options() const { return options_; }  // positionals among them, in order
   const std::vector<std::string>& notes() const { return notes_; }
@@ -131,7 +134,7 @@ class Command {
   bool wantsVersion() const { return wants_version_; }
 
  private:
-  std::string program_, summary_, heading_ = "Options";
+  std::string program_, word_, summary_, heading_ = "Options";
   std::vector<Example> examples_;
   std::vector<Option> options_;
   std::vector<std::string> notes_;
@@ -158,6 +161,20 @@ std::string helpText(const Command& command);
 // ask the body to stop at the next progress step, a second one kills. Writes --stats and --depfile after a body that
 // returned 0 or 5.
 int run(int argc, char** argv, Command& command, const std::function<int(Session&)>& body);
+
+// A program of several commands, each with options of its own: `program word …`.
+struct Suite {
+  struct Part {
+    Command* command = nullptr;  // with a word()
+    std::function<int(Session&)> body;
+  };
+  std::string program, summary;
+  std::vector<Part> parts;
+};
+
+// As above, for the command that the first argument names. Without arguments it is a usage error; --help lists the
+// commands, and `program word --help` is that of one.
+int run(int argc, char** argv, Suite& suite);
 
 // Throws Error{kUsage} if -o names a file that does not end in `suffix` (".t4h"); `remedy` says what to do instead.
 void expectSuffix(const Session& session, std::string_view suffix, std::string_view remedy);

@@ -53,6 +53,11 @@ Command& Command::note(std::string text) {
   return *this;
 }
 
+Command& Command::subcommand(std::string word) {
+  word_ = std::move(word);
+  return *this;
+}
+
 Command& Command::common(std::initializer_list<Common> which) {
   heading("Common options");
   for (const Common one : which) {
@@ -148,8 +153,12 @@ std::string entry(const Option& option) {
   return text + line + "\n";
 }
 
+std::string titleOf(const Command& command) {
+  return command.word().empty() ? command.program() : command.program() + " " + command.word();
+}
+
 std::string usageLine(const Command& command) {
-  std::string usage = "usage: " + command.program();
+  std::string usage = "usage: " + titleOf(command);
   for (const Option& option : command.options()) {
     if (!option.positional) continue;
     const std::string name = option.flags + (takesMany(option.binding) ? "..." : "");
@@ -165,7 +174,7 @@ std::string usageLine(const Command& command) {
 }  // namespace
 
 std::string helpText(const Command& command) {
-  std::string text = command.program() + " - " + command.summary() + "\n\n";
+  std::string text = titleOf(command) + " - " + command.summary() + "\n\n";
   if (!command.examples().empty()) {
     text += "Examples:\n";
     for (const Example& example : command.examples()) {

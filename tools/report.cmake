@@ -1,0 +1,10 @@
+tet4d_add_program(tet4d-report SOURCES tet4d-report.cpp report/ball.cpp report/child.cpp report/compare.cpp report/mc_sweep.cpp
+                  report/page.cpp report/play_sweep.cpp report/plot.cpp report/plot_png.cpp report/rows.cpp report/slice_errors.cpp
+                  report/stiff_sweep.cpp
+                  DEPENDS tet4d::cli tet4d::exchange tet4d::measure nlohmann_json::nlohmann_json fmt::fmt)
+if(TET4D_WITH_CAIRO)
+  find_package(PkgConfig REQUIRED)
+  pkg_check_modules(cairo REQUIRED IMPORTED_TARGET GLOBAL cairo)
+  target_link_libraries(tet4d-report PRIVATE PkgConfig::cairo)
+  target_compile_definitions(tet4d-report PRIVATE TET4D_WITH_CAIRO=1)
+endif()

@@ -1,0 +1,266 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <numbers>
+
+#include "formats/container.h"
+#include "libpreprocess/error.h"
+#include "libpreprocess/outofcore/output_file.h"
+#include "tools/report/slice_errors.h"
+#include "tools/report/sweeps.h"
+
+namespace tet4d::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kColumns{"space_stride",
+                                        "time_stride",
+                                        "samples",
+                                        "tets",
+                                        "seconds_wall",
+                                        "seconds_cpu",
+                                        "samples_per_second",
+                                        "peak_bytes",
+                                        "rms_at_cells",
+                                        "p99_at_cells",
+                                        "max_at_cells",
+                                        "rms_between_cells",
+                                        "p99_between_cells",
+                                        "max_between_cells",
+                                        "max_bound_between_cells",
+                                        "rms_between",
+                                        "area_error_at",
+                                        "area_error_between",
+                                        "volume_error_at",
+                                        "volume_error_between",
+                                        "load"};
+
+// The strides of a sweep, and the frames measured at and between.
+struct Strides {
+  std::vector<std::size_t> space, time;
+  // Frames of the input every time stride keeps, inner ones first; of `frames`.
+  std::vector<double> at(std::size_t frames) const {
+    const std::size_t step = time.back();
+    std::vector<double> result;
+    for (std::size_t k = 0; k < frames && result.size() < 3; k += step) {
+      if (k > 0 && k + 1 < frames) result.push_back(static_cast<double>(k));
+    }
+    if (result.empty()) result.push_back(0);
+    return result;
+  }
+  // Halfway between two frames that a stride keeps, near those.
+  std::vector<double> between(std::size_t frames, std::size_t stride) const {
+    std::vector<double> result;
+    for (const double k : at(frames)) {
+      const double half = k + static_cast<double>(stride) / 2;
+      if (half < static_cast<double>(frames - 1)) result.push_back(half);
+    }
+    return result;
+  }
+};
+
+Strides stridesOf(bool full) {
+  if (full) return {{1, 2, 3, 4, 6, 8, 12, 16}, {1, 2, 4, 8}};
+  return {{1, 2, 4, 8}, {1, 2, 4}};
+}
+
+// What measures a hypermesh file: adds figures of slices at times, given in frames of the whole input.
+using Judge = std::function<void(const hypermesh::File&, double frame, SliceErrors&)>;
+
+struct Job {
+  std::string sweep, input, digest;
+  std::vector<std::string> words;  // of tet4d-mc, but for strides and outputs
+  std::size_t frames = 0;
+  double cell = 1;  // world
+  Judge judge;
+};
+
+void measureFile(const std::string& path, const Job& job, const Strides& strides, std::size_t stride, Row& row) {
+  const auto mesh = unwrap(hypermesh::File::open(path));
+  SliceErrors at, between;
+  for (const double frame : strides.at(job.frames)) job.judge(mesh, frame, at);
+  for (const double frame : strides.between(job.frames, stride)) job.judge(mesh, frame, between);
+  at.write(row, "at", job.cell);
+  between.write(row, "between", job.cell);
+}
+
+// One row: a run of tet4d-mc, and its slices measured.
+void runOne(Bench& bench, const Job& job, const Strides& strides, std::size_t space, std::size_t time) {
+  std::vector<std::string> words = job.words;
+  if (space > 1) words.insert(words.end(), {"--stride", std::to_string(space)});
+  if (time > 1) words.insert(words.end(), {"--time-stride", std::to_string(time)});
+  Row row = beginRow(job.sweep, job.input, job.digest, "tet4d-mc", words);
+  if (const Row* earlier = bench.rows.find(row)) {
+    bench.rows.add(*earlier);
+    return;
+  }
+  words.insert(words.end(), {"-o", "X.t4h", "-f", "-q", "--stats", "stats.json"});
+  const ChildRun run = bench.programs.median("tet4d-mc", words, bench.work + "/stats.json", bench.repeat);
+  row["space_stride"] = space;
+  row["time_stride"] = time;
+  addRun(row, run);
+  if (run.record) {
+    row["tets"] = run.record->count("tets");
+    row["samples"] = run.record->count("voxels");
+    row["samples_per_second"] = number(static_cast<double>(run.record->count("voxels")) / run.seconds_wall);
+    measureFile(bench.work + "/X.t4h", job, strides, time, row);
+  }
+  std::error_code ignored;
+  fs::remove(bench.work + "/X.t4h", ignored);
+  bench.rows.add(std::move(row));
+}
+
+// Error against seconds, against the grid step, and between frames against seconds: a line a time stride.
+std::vector<Plot> plotsOf(const Rows& rows, const std::string& sweep) {
+  Plot time{sweep + "-error-seconds",
+            "error between frames against run time",
+            "seconds (wall, whole program)",
+            "rms distance, cells of the finest grid",
+            true,
+            true,
+            {}};
+  Plot step{sweep + "-error-stride",
+            "error at frames against the grid step",
+            "stride in space",
+            "rms distance, cells of the finest grid",
+            true,
+            true,
+            {}};
+  std::map<std::size_t, std::pair<Series, Series>> by_time;
+  for (const Row& row : rows.all()) {
+    if (row.at("sweep") != sweep || !row.contains("rms_at_cells")) continue;
+    const auto stride = row.at("time_stride").get<std::size_t>();
+    auto& [first, second] = by_time[stride];
+    first.name = second.name = "time stride " + std::to_string(stride);
+    const auto value = [&](const char* name) { return row.at(name).is_number() ? row.at(name).get<double>() : 0; };
+    const std::string label = stride == 1 ? fmt::format("1/{}", row.at("space_stride").get<std::size_t>()) : "";
+    first.points.push_back({value("seconds_wall"), value("rms_between_cells"), label});
+    second.points.push_back({value("space_stride"), value("rms_at_cells"), ""});
+  }
+  for (auto& [stride, both] : by_time) {
+    time.series.push_back(std::move(both.first));
+    step.series.push_back(std::move(both.second));
+  }
+  return {time, step};
+}
+
+void runAll(Bench& bench, const Job& job, const Strides& strides) {
+  bench.session.progress().phase(job.sweep, strides.space.size() * strides.time.size());
+  std::uint64_t done = 0;
+  for (const std::size_t time : strides.time) {
+    for (const std::size_t space : strides.space) {
+      runOne(bench, job, strides, space, time);
+      bench.session.progress().step(++done);
+    }
+  }
+}
+
+}  // namespace
+
+Section sweepBall(Bench& bench) {
+  Ball ball;
+  if (bench.full) ball.samples = 97, ball.frames = 33;
+  const double step = 1 / static_cast<double>(ball.samples - 1), last = static_cast<double>(ball.frames - 1);
+  ball.write(bench.work + "/ball.f32");
+  std::string times;
+  for (std::size_t k = 0; k < ball.frames; ++k) times += fmt::format("{}\n", static_cast<double>(k) / last);
+  outofcore::OutputFile file(bench.work + "/ball-times.txt", true);
+  file.write(times);
+  file.commit();
+  const std::string n = std::to_string(ball.samples);
+  Job job{"ball",
+          fmt::format("ball of {0}^3 x {1}", n, ball.frames),
+          digestOf({bench.work + "/ball.f32"}),
+          {"ball.f32", "--size", fmt::format("{0},{0},{0}", n), "--type", "f32", "--spacing", fmt::format("{}", step),
+           "--times", "ball-times.txt", "--iso", "0"},
+          ball.frames,
+          step,
+          {}};
+  job.judge = [&](const hypermesh::File& mesh, double frame, SliceErrors& errors) {
+    const double time = frame / last, radius = ball.radiusAt(time);
+    const exchange::WorldMesh slice = sliceAt(mesh, time);
+    const measure::OneWayDistance d = measure::distanceToSphere(
+        {slice.points, slice.triangles}, ball.centreAt(time), radius, {1e-4 * step, 50'000}, bench.session.executor());
+    errors.add(d.max, d.max_bound, d.p99, d.rms);
+    const Size size = sizeOf(slice);
+    const double area = 4 * std::numbers::pi * radius * radius;
+    errors.addSize(size.area / area - 1, 3 * size.volume / (area * radius) - 1);
+  };
+  runAll(bench, job, stridesOf(bench.full));
+  return {"tet4d-mc: a ball that moves and grows",
+          "Slices of the hypermesh against the sphere they should be, in closed form: the distance of the slice's "
+          "points to "
+          "the sphere at frames that every time stride keeps, and halfway between two kept frames; areas and volumes "
+          "relative to the sphere's. Cells are those of the finest grid. Second order is a slope of two in the second "
+          "plot.",
+          plotsOf(bench.rows, "ball"), kColumns, "ball"};
+}
+
+Section sweepFrames(Bench& bench, const std::vector<std::string>& inputs, const std::string& iso) {
+  std::vector<std::string> files, words;
+  for (const std::string& input : inputs) {
+    const std::string path = fs::absolute(input).string();
+    words.push_back(path);
+    if (!fs::is_directory(path)) {
+      files.push_back(path);
+      continue;
+    }
+    for (const auto& entry : fs::directory_iterator(path)) {
+      if (entry.is_regular_file() && entry.path().extension() != ".md") files.push_back(entry.path().string());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  words.insert(words.end(), {"--iso", iso});
+  const std::string name = fs::path(inputs.front()).filename().empty()
+                               ? fs::path(inputs.front()).parent_path().filename()
+                               : fs::path(inputs.front()).filename();
+  // The reference: all frames, all samples.
+  std::vector<std::string> reference_words = words;
+  reference_words.insert(reference_words.end(), {"-o", "exact.t4h", "-f", "-q", "--stats", "stats.json"});
+  const ChildRun run = bench.programs.run("tet4d-mc", reference_words, bench.work + "/stats.json");
+  if (run.exit_code != 0)
+    throw Error(FaultCode::kBadInput, inputs.front(), "", "tet4d-mc fails on it: " + run.fault, "");
+  const auto exact = unwrap(hypermesh::File::open(bench.work + "/exact.t4h"));
+  const AffineMap& map = exact.header().index_to_world;
+  const double cell = std::cbrt(std::abs(cellVolume(map)));
+  std::map<double, exchange::WorldMesh> slices;  // of the reference, by frame
+  Job job{"frames", name, digestOf(files), words, exact.times().size(), cell, {}};
+  job.judge = [&](const hypermesh::File& mesh, double frame, SliceErrors& errors) {
+    const double time = timeOfFrame(exact.times(), frame);
+    if (time > mesh.times().back()) return;  // the stride leaves the end out
+    if (!slices.contains(frame)) slices.emplace(frame, sliceAt(exact, time));
+    const exchange::WorldMesh &reference = slices.at(frame), slice = sliceAt(mesh, time);
+    const measure::SurfaceDistance d =
+        measure::surfaceDistance({slice.points, slice.triangles}, {reference.points, reference.triangles},
+                                 {1e-2 * cell, 30'000, 1'000'000}, bench.session.executor());
+    errors.add(d.max(), d.maxBound(), d.p99(), d.rms());
+    const Size size = sizeOf(slice), whole = sizeOf(reference);
+    errors.addSize(size.area / whole.area - 1, size.closed && whole.closed ? size.volume / whole.volume - 1 : 0);
+  };
+  runAll(bench, job, stridesOf(bench.full));
+  std::error_code ignored;
+  fs::remove(bench.work + "/exact.t4h", ignored);
+  return {
+      "tet4d-mc: " + name,
+      "Slices against those of the hypermesh of all samples and frames, in both directions (the worse counts): at "
+      "frames "
+      "that every time stride keeps, and halfway between two kept frames. A surface that ends at the walls ends where "
+      "the strided grid does, which is what the largest distances show. Volumes are left out (0) where slices are "
+      "open. "
+      "The row of stride 1 in both is the reference itself.",
+      plotsOf(bench.rows, "frames"), kColumns, "frames"};
+}
+
+std::string digestOf(const std::vector<std::string>& files) {
+  if (files.size() == 1) return cli::fileDigest(files.front());
+  std::string all;
+  for (const std::string& file : files) all += cli::fileDigest(file);
+  return fmt::format("{:016x}", container::xxh3(std::as_bytes(std::span(all))));
+}
+
+}  // namespace tet4d::report

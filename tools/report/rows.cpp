@@ -1,0 +1,143 @@
+#include "tools/report/rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "libpreprocess/error.h"
+#include "libpreprocess/outofcore/output_file.h"
+
+namespace tet4d::report {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr auto kReplace = ordered_json::error_handler_t::replace;
+
+std::string machineText() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string name = "unknown processor";
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t colon = line.find(": ");
+    if (!line.starts_with("model name") || colon == std::string::npos) continue;
+    name = line.substr(colon + 2);
+    break;
+  }
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  return name + ", " + std::to_string(cores) + (cores == 1 ? " core" : " cores");
+}
+
+double loadAverage() {
+  std::ifstream file("/proc/loadavg");
+  double load = 0;
+  file >> load;
+  return load;
+}
+
+std::string csvField(const ordered_json& value) {
+  if (value.is_null()) return "";
+  const std::string text = value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, kReplace);
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+constexpr const char* kKeys[] = {"sweep", "input", "digest", "program", "arguments"};
+
+}  // namespace
+
+Context contextOf(const std::string& commit, const std::string& bin, const Programs& programs) {
+  Context context{commit, machineText()};
+  if (!commit.empty()) return context;
+  const Programs system("", programs.work());
+  const ChildRun git = system.run("git", {"-C", bin.empty() ? "." : bin, "describe", "--always", "--dirty=+"});
+  context.commit = git.exit_code == 0 ? git.output.substr(0, git.output.find('\n')) : "unknown";
+  return context;
+}
+
+ordered_json number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr); }
+
+Row beginRow(const std::string& sweep, const std::string& input, const std::string& digest, const std::string& program,
+             const std::vector<std::string>& arguments) {
+  std::string line;
+  for (const std::string& word : arguments) {
+    if (!line.empty()) line += ' ';
+    // No row tells where files are: a path is shown by its name.
+    line += word.starts_with('/') ? std::filesystem::path(word).filename().string() : word;
+  }
+  return {{"sweep", sweep}, {"input", input}, {"digest", digest}, {"program", program}, {"arguments", line}};
+}
+
+void addRun(Row& row, const ChildRun& run) {
+  row["exit"] = run.exit_code;
+  row["fault"] = run.fault;
+  row["seconds_wall"] = number(run.seconds_wall);
+  row["seconds_cpu"] = number(run.seconds_cpu);
+  row["peak_bytes"] = run.peak_bytes;
+  if (run.record) {
+    row["threads"] = run.record->threads;
+    row["anonymous_bytes"] = run.record->anonymous_bytes;
+  }
+  row["load"] = loadAverage();
+}
+
+Rows::Rows(std::string folder, Context context, bool resume)
+    : folder_(std::move(folder)), context_(std::move(context)) {
+  const std::string path = folder_ + "/runs.jsonl";
+  if (resume) {
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);) {
+      Row row = Row::parse(line, nullptr, false);
+      if (row.is_object()) earlier_.push_back(std::move(row));
+    }
+  }
+  if (!std::ofstream(path, std::ios::trunc)) {
+    throw Error(FaultCode::kIo, path, "", "cannot be written", "name a folder you may write to: -o report");
+  }
+}
+
+const Row* Rows::find(const Row& begun) const {
+  for (const Row& row : earlier_) {
+    const bool same = std::all_of(std::begin(kKeys), std::end(kKeys),
+                                  [&](const char* key) { return row.contains(key) && row.at(key) == begun.at(key); });
+    if (same && row.value("commit", "") == context_.commit && row.value("exit", 1) == 0) return &row;
+  }
+  return nullptr;
+}
+
+void Rows::add(Row row) {
+  row["commit"] = context_.commit;
+  row["machine"] = context_.machine;
+  std::ofstream file(folder_ + "/runs.jsonl", std::ios::app);
+  file << row.dump(-1, ' ', false, kReplace) << '\n';
+  if (!file.flush())
+    throw Error(FaultCode::kNoSpace, folder_ + "/runs.jsonl", "", "cannot be written", "free some space");
+  rows_.push_back(std::move(row));
+}
+
+void Rows::writeCsv() const {
+  std::vector<std::string> names;
+  for (const Row& row : rows_) {
+    for (const auto& [name, value] : row.items()) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  outofcore::OutputFile file(folder_ + "/runs.csv", true);
+  const auto writeLine = [&](const auto& fieldOf) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (i > 0) file.write(",");
+      file.write(fieldOf(names[i]));
+    }
+    file.write("\n");
+  };
+  writeLine([](const std::string& name) { return csvField(name); });
+  for (const Row& row : rows_) {
+    writeLine([&](const std::string& name) { return row.contains(name) ? csvField(row.at(name)) : std::string(); });
+  }
+  file.commit();
+}
+
+}  // namespace tet4d::report
