@@ -73,7 +73,8 @@ std::string synopsis(const Command& command) {
   return fmt::format("{} [{}...]\n", line, italic("OPTION"));
 }
 
-std::string optionsText(const Command& command, const char* section) {
+// subsections: headings are sections of their own, not lines within one.
+std::string optionsText(const Command& command, bool subsections) {
   std::string text;
   std::vector<std::string> headings;
   for (const Option& option : command.options()) {
@@ -82,7 +83,7 @@ std::string optionsText(const Command& command, const char* section) {
     if (!option.positional && !known) headings.push_back(option.heading);
   }
   for (const std::string& heading : headings) {
-    text += fmt::format(".{} {}\n", section, plain(heading));
+    text += subsections ? fmt::format(".SS {}\n", plain(heading)) : fmt::format(".PP\n{}\n", bold(heading));
     for (const Option& option : command.options()) {
       const bool shown = !option.positional && option.heading == heading && (option.traits & kNotInHelp) == 0;
       if (shown) text += entry(option);
@@ -101,12 +102,12 @@ std::string manText(const Manual& manual) {
     text += fmt::format("{}{}", i > 0 ? ".br\n" : "", synopsis(*manual.commands[i]));
   }
   const bool several = manual.commands.size() > 1;
-  if (!several) text += fmt::format(".SH OPTIONS\n{}", optionsText(*manual.commands.front(), "SS"));
+  if (!several) text += fmt::format(".SH OPTIONS\n{}", optionsText(*manual.commands.front(), true));
   if (several) {
     text += ".SH COMMANDS\n";
     for (const Command* command : manual.commands) {
       text += fmt::format(".SS {}\n{}\n{}", plain(titleOf(*command)), plain(command->summary()),
-                          optionsText(*command, "PP\n"));
+                          optionsText(*command, false));
     }
   }
   text += ".SH EXAMPLES\n";
@@ -117,7 +118,8 @@ std::string manText(const Manual& manual) {
   }
   std::string notes;
   for (const Command* command : manual.commands) {
-    for (const std::string& note : command->notes()) notes += fmt::format(".PP\n{}\n", plain(note));
+    for (const std::string& note : command->notes())
+      notes += fmt::format("{}{}\n", notes.empty() ? "" : ".PP\n", plain(note));
   }
   if (!notes.empty()) text += ".SH NOTES\n" + notes;
   return text +

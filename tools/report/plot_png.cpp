@@ -28,11 +28,13 @@ class CairoCanvas final : public Canvas {
   void line(const std::vector<std::pair<double, double>>& points, const std::string& colour, double width) override {
     use(colour);
     cairo_set_line_width(context_, width);
+    cairo_new_path(context_);  // text leaves a current point
     for (const auto& [x, y] : points) cairo_line_to(context_, x, y);
     cairo_stroke(context_);
   }
   void dot(double x, double y, double radius, const std::string& colour) override {
     use(colour);
+    cairo_new_path(context_);
     cairo_arc(context_, x, y, radius, 0, 6.283185307179586);
     cairo_fill(context_);
   }

@@ -45,7 +45,7 @@ std::string csvField(const ordered_json& value) {
   return quoted + "\"";
 }
 
-constexpr const char* kKeys[] = {"sweep", "input", "digest", "program", "arguments"};
+constexpr const char* kKeys[] = {"sweep", "input", "digest", "program", "arguments", "case"};
 
 }  // namespace
 
@@ -101,8 +101,9 @@ Rows::Rows(std::string folder, Context context, bool resume)
 
 const Row* Rows::find(const Row& begun) const {
   for (const Row& row : earlier_) {
-    const bool same = std::all_of(std::begin(kKeys), std::end(kKeys),
-                                  [&](const char* key) { return row.contains(key) && row.at(key) == begun.at(key); });
+    const bool same = std::all_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) {
+      return row.contains(key) == begun.contains(key) && (!row.contains(key) || row.at(key) == begun.at(key));
+    });
     if (same && row.value("commit", "") == context_.commit && row.value("exit", 1) == 0) return &row;
   }
   return nullptr;

@@ -85,14 +85,14 @@ void runCase(Bench& bench, const Ball& ball, const Case& one) {
                                  "--iso",
                                  "0"};
   Row row = beginRow("stiff", fmt::format("ball of {}^3 x {}", n, ball.frames), digestOf({path}), "tet4d-mc", words);
+  row["case"] = one.what;
+  row["value"] = one.value;
   if (const Row* earlier = bench.rows.find(row)) {
     bench.rows.add(*earlier);
     return;
   }
   words.insert(words.end(), {"-o", "X.t4h", "-f", "-q", "--stats", "stats.json"});
   const ChildRun run = bench.programs.median("tet4d-mc", words, bench.work + "/stats.json", bench.repeat);
-  row["case"] = one.what;
-  row["value"] = one.value;
   addRun(row, run);
   if (run.record) {
     row["tets"] = run.record->count("tets");
