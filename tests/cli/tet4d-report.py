@@ -80,7 +80,7 @@ def check_mc(result):
 
 def check_stiff(result):
     rows = report(result, "r")
-    assert {r["case"] for r in rows} == {"aspect ratio", "distance of the origin", "unit of time", "noise"}
+    assert {r["case"] for r in rows} == {"aspect ratio", "far origin", "unit of time", "noise"}
     for row in rows:
         assert row["exit"] == 0, row["fault"]
         assert all(v is not None for v in row.values()), row

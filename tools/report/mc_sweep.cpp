@@ -115,11 +115,12 @@ void runOne(Bench& bench, const Job& job, const Strides& strides, std::size_t sp
   bench.rows.add(std::move(row));
 }
 
-// Error against seconds, against the grid step, and between frames against seconds: a line a time stride.
+// Error against seconds (of CPU: those of a clock are the machine's as much as ours), against the grid step, and
+// between frames against seconds: a line a time stride.
 std::vector<Plot> plotsOf(const Rows& rows, const std::string& sweep) {
   Plot time{sweep + "-error-seconds",
             "error between frames against run time",
-            "seconds (wall, whole program)",
+            "seconds of CPU, whole program",
             "rms distance, cells of the finest grid",
             true,
             true,
@@ -139,7 +140,7 @@ std::vector<Plot> plotsOf(const Rows& rows, const std::string& sweep) {
     first.name = second.name = "time stride " + std::to_string(stride);
     const auto value = [&](const char* name) { return row.at(name).is_number() ? row.at(name).get<double>() : 0; };
     const std::string label = stride == 1 ? fmt::format("1/{}", row.at("space_stride").get<std::size_t>()) : "";
-    first.points.push_back({value("seconds_wall"), value("rms_between_cells"), label});
+    first.points.push_back({value("seconds_cpu"), value("rms_between_cells"), label});
     second.points.push_back({value("space_stride"), value("rms_at_cells"), ""});
   }
   for (auto& [stride, both] : by_time) {

@@ -76,7 +76,8 @@ void addRun(Row& row, const ChildRun& run) {
   row["fault"] = run.fault;
   row["seconds_wall"] = number(run.seconds_wall);
   row["seconds_cpu"] = number(run.seconds_cpu);
-  row["peak_bytes"] = run.peak_bytes;
+  // What the system says of a child counts this program too, until the child became its own.
+  row["peak_bytes"] = run.record ? run.record->peak_bytes : run.peak_bytes;
   if (run.record) {
     row["threads"] = run.record->threads;
     row["anonymous_bytes"] = run.record->anonymous_bytes;

@@ -28,7 +28,7 @@ std::vector<Case> casesOf(bool full) {
   const std::vector<double> noises =
       full ? std::vector<double>{0.001, 0.01, 0.03, 0.1, 0.3, 1} : std::vector<double>{0.01, 0.1, 1};
   for (const double a : aspects) cases.push_back({"aspect ratio", a, a, 0, 1, 0});
-  for (const double o : origins) cases.push_back({"distance of the origin", o, 1, o, 1, 0});
+  for (const double o : origins) cases.push_back({"far origin", o, 1, o, 1, 0});
   for (const double u : units) cases.push_back({"unit of time", u, 1, 0, u, 0});
   for (const double n : noises) cases.push_back({"noise", n, 1, 0, 1, n});
   return cases;
