@@ -60,9 +60,9 @@ TEST_F(ReadPng, EveryPrefixIsRefusedByName) {
 
 TEST_F(ReadPng, ChangedBytesNeverCrash) {
   for (std::size_t i = 0; i < sizeof kPng; ++i) {
-    for (const unsigned char change : {0x01, 0x80, 0xff}) {
+    for (const unsigned change : {0x01U, 0x80U, 0xffU}) {
       std::vector<unsigned char> bytes(std::begin(kPng), std::end(kPng));
-      bytes[i] ^= change;
+      bytes[i] = static_cast<unsigned char>(bytes[i] ^ change);
       try {
         EXPECT_LE(readPng(written(bytes)).rgba.size(), 4U * 6);
       } catch (const Error& error) {
