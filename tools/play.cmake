@@ -1,1 +1,1 @@
-tet4d_add_program(tet4d-play SOURCES tet4d-play.cpp play/baseline.cpp play/pagers.cpp DEPENDS tet4d::host tet4d::cli)
+tet4d_add_program(tet4d-play SOURCES tet4d-play.cpp play/baseline.cpp play/coloring.cpp play/pagers.cpp DEPENDS tet4d::host tet4d::cli)

@@ -22,6 +22,7 @@
 #include "player/scene/shot_file.h"
 #include "tools/common/cli.h"
 #include "tools/play/baseline.h"
+#include "tools/play/coloring.h"
 #include "tools/play/pagers.h"
 
 namespace {
@@ -33,6 +34,7 @@ constexpr std::uint64_t kMostIoThreads = 64;
 struct Options {
   std::vector<std::string> inputs;
   bool offscreen = false, flat = false, panels = false;
+  play::Coloring coloring;
   std::array<std::uint32_t, 2> size{1280, 720};
   std::string at, times, camera, write_camera, contact_sheet;
   std::string renderer = host::hasOffscreenGl() ? "gl" : "cpu";
@@ -312,11 +314,13 @@ int playFiles(cli::Session& session, const Options& options) {
   if (!options.camera.empty()) session.dependsOn(options.camera);
   host::Film film;
   for (const dyntri::File& file : opened) film.files.push_back({&file, std::nullopt, true});
+  for (std::size_t i = 0; i < film.files.size(); ++i)
+    play::applyColoring(session, options.coloring, options.inputs[i], film.files[i]);
   film.times = timesOf(options, film.files);
   checkNames(options, common, film.times.size());
   film.shot = shotOf(options, film.files);
   film.format = {options.size[0], options.size[1], static_cast<std::uint32_t>(options.samples)};
-  film.smooth = !options.flat;
+  film.smooth = !options.flat && options.coloring.shading != "flat";
   film.orbit_degrees = options.orbit_degrees;
   film.arrival = options.arrival == "wait" ? host::Arrival::kWait : host::Arrival::kDraw;
   film.fps = options.fps;
@@ -360,6 +364,14 @@ int main(int argc, char** argv) {
       .option("--quit-after", "N", "close the window after N pictures", &o.quit_after, cli::kNotInHelp)
       .option("--screenshot", "FILE", "what the window shows at the end", &o.screenshot,
               cli::kNotInHelp | cli::kIsOutput)
+      .option("--shading", "WHICH", "normals: summed up in the slice, the file's column \"normal\", or one a triangle",
+              cli::Choice{&o.coloring.shading, {"slice", "file", "flat"}})
+      .option("--color", "NAME", "colour by a column; NAME:0, NAME:1 … a component, NAME:magnitude its length",
+              &o.coloring.color)
+      .option("--range", "LO:HI", "values at the ends of the map; default: the column's in the file, read once",
+              &o.coloring.range)
+      .option("--map", "NAME", "colours from low to high",
+              cli::Choice{&o.coloring.map, {"viridis", "cividis", "inferno", "magma", "cool-warm", "grey"}})
       .heading("Camera")
       .option("--camera", "FILE", "camera, lights and material (JSON); default: fitted to the data", &o.camera)
       .option("--orbit", "DEG", "turn of the camera about the vertical over the whole film", &o.orbit_degrees)
