@@ -39,7 +39,8 @@ RunRecord recordOf(const json& all) {
         {field<std::string>(phase, "name"), field<double>(phase, "seconds_wall"), field<double>(phase, "seconds_cpu")});
   }
   // An error that is no number (null) was not measured.
-  for (const auto& [name, value] : fieldOr<json>(all, "error", json::object()).items()) {
+  const auto errors = fieldOr<json>(all, "error", json::object());  // outlives the loop over its items
+  for (const auto& [name, value] : errors.items()) {
     if (value.is_number()) record.errors[name] = value.get<double>();
   }
   for (const json& frame : fieldOr<json>(all, "frames", json::array())) {
