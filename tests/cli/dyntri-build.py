@@ -109,6 +109,24 @@ CASES = [
         "needs": ["tet4d-mc", "tet4d-info"],
     },
     {
+        "name": "pictures by a column, its component, a range and the file's normals, the same from compressed pages",
+        "shell": "frames=\"$(ls {data}/dambreak/alpha_00{08,09,10}.nrrd)\"; "
+        "tet4d-mc $frames --iso 0.5 --normals gradient --velocity -q -o n.t4h; dyntri-build n.t4h -q -o n.t4d; "
+        "dyntri-build n.t4h --page-codec zstd -q -o z.t4d 2> refused || "
+        "{ grep -q 'rebuild with TET4D_WITH_ZSTD' refused; cp n.t4d z.t4d; }; "
+        "draw='--offscreen --renderer cpu --size 96x64 --samples 1 --at 1.5f -q'; "
+        "tet4d-play n.t4d $draw -o plain.png; tet4d-play n.t4d $draw --color velocity -o speed.png; "
+        "tet4d-play z.t4d $draw --color velocity:magnitude -o packed.png; cmp speed.png packed.png; "
+        "tet4d-play n.t4d $draw --color velocity:2 --range -1:1 --map cool-warm -o z.png; "
+        "tet4d-play n.t4d $draw --shading file -o file.png; "
+        "for a in plain speed z file; do for b in plain speed z file; do test $a = $b || ! cmp -s $a.png $b.png; done; done; "
+        "code=0; tet4d-play n.t4d $draw --color velocty -o x.png || code=$?; test $code = 2; "
+        "code=0; tet4d-play n.t4d $draw --color velocity:3 -o x.png || code=$?; test $code = 2",
+        "stderr": ["has no column \"velocty\"", "did you mean velocity?", "expected 0 to 2 or magnitude"],
+        "absent": ["x.png"],
+        "needs": ["tet4d-mc", "tet4d-play"],
+    },
+    {
         "name": "bands from 1 to 16",
         "shell": DAM + "dyntri-build dam.t4h --bands 16 -q -o many.t4d; dyntri-build dam.t4h --bands 1 -q -o one.t4d; "
         "tet4d-info --validate one.t4d > /dev/null; tet4d-info --validate --json many.t4d; "

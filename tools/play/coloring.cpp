@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -62,6 +63,40 @@ float numberOf(std::string_view text) {
   return number;
 }
 
+// Where a column's finite values lie: all of them, and without a hundredth at either end, for a few odd ones must not
+// take all colours.
+struct ValueSpread {
+  float low = 0, high = 1, least = 0, most = 1;
+};
+
+// Of every value in small files, of evenly taken ones in large ones. O(the column), memory of a page of it.
+ValueSpread spreadOf(const std::string& name, const dyntri::File& file, const scene::DrawColumn& column) {
+  constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 20;
+  const std::uint64_t stride = 1 + file.header().vertices / kMostSamples;
+  std::vector<float> samples;
+  float least = std::numeric_limits<float>::infinity(), most = -least;
+  for (std::size_t k = 0; k < file.geometryPages(); ++k) {
+    const paged::PageBytes page = unwrap(file.loadColumn(column.column, k));
+    std::vector<float> rows(file.geometryEntry(k).counts[0] * column.components);
+    if (page.bytes().size() < rows.size() * sizeof(float))
+      throw Error(FaultCode::kBadInput, file.reader().path(), "page " + std::to_string(k),
+                  "has too few values of " + name, "make the file again");
+    if (!rows.empty()) std::memcpy(rows.data(), page.bytes().data(), rows.size() * sizeof(float));
+    scene::extendRange(rows, column, least, most);
+    for (std::uint64_t v = 0; v < file.geometryEntry(k).counts[0]; v += stride) {
+      const float value = scene::columnValue(column, std::span(rows).subspan(v * column.components, column.components));
+      if (std::isfinite(value)) samples.push_back(value);
+    }
+  }
+  if (samples.empty()) return {};
+  const auto rank = [&](double share) {
+    const auto at = samples.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(samples.size() - 1));
+    std::nth_element(samples.begin(), at, samples.end());
+    return *at;
+  };
+  return {rank(0.01), rank(0.99), least, most};
+}
+
 void setRange(cli::Session& session, const Coloring& coloring, const dyntri::File& file, scene::DrawColumn& column) {
   if (!coloring.range.empty()) {
     const std::size_t colon = coloring.range.find(':');
@@ -71,17 +106,11 @@ void setRange(cli::Session& session, const Coloring& coloring, const dyntri::Fil
     if (column.low > column.high) std::swap(column.low, column.high);
     return;
   }
-  float low = std::numeric_limits<float>::infinity(), high = -low;
-  for (std::size_t k = 0; k < file.geometryPages(); ++k) {
-    const auto bytes = unwrap(file.loadColumn(column.column, k)).bytes();
-    std::vector<float> rows(file.geometryEntry(k).counts[0] * column.components);
-    if (bytes.size() < rows.size() * sizeof(float)) continue;  // verify() names it
-    if (!rows.empty()) std::memcpy(rows.data(), bytes.data(), rows.size() * sizeof(float));
-    scene::extendRange(rows, column, low, high);
-  }
-  column.low = low <= high ? low : 0;
-  column.high = low <= high ? high : 1;
-  session.note(coloring.color + " from " + std::to_string(column.low) + " to " + std::to_string(column.high));
+  const ValueSpread spread = spreadOf(coloring.color, file, column);
+  column.low = spread.low, column.high = spread.high;
+  session.note(coloring.color + " from " + std::to_string(column.low) + " to " + std::to_string(column.high) +
+               ": 98 % of its values; all lie in " + std::to_string(spread.least) + " to " +
+               std::to_string(spread.most) + " (--range LO:HI)");
 }
 
 }  // namespace
