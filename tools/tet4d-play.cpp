@@ -100,6 +100,12 @@ void checkSuffixes(const Options& options, const std::string& output) {
               "give -o frames/%05d.png or -o film.y4m");
 }
 
+void checkBudget(const Options& options) {
+  if (options.budget_ms && (std::isnan(*options.budget_ms) || *options.budget_ms < 0)) {
+    throw Error(FaultCode::kUsage, "", "--budget-ms", "expected 0, a number above it or inf", "give --budget-ms 40");
+  }
+}
+
 void checkNumbers(const Options& options) {
   if (!std::isfinite(options.orbit_degrees)) {
     throw Error(FaultCode::kUsage, "", "--orbit", "expected a finite number of degrees", "give --orbit 90");
@@ -107,9 +113,7 @@ void checkNumbers(const Options& options) {
   if (!std::isfinite(options.fps) || options.fps <= 0) {
     throw Error(FaultCode::kUsage, "", "--fps", "expected a finite number above 0", "give --fps 25");
   }
-  if (options.budget_ms && (std::isnan(*options.budget_ms) || *options.budget_ms < 0)) {
-    throw Error(FaultCode::kUsage, "", "--budget-ms", "expected 0, a number above it or inf", "give --budget-ms 40");
-  }
+  checkBudget(options);
   if (options.budget_ms && options.arrival == "wait") {
     throw Error(FaultCode::kUsage, "", "--budget-ms",
                 "makes pictures depend on the machine, and --arrival wait is exact", "give --arrival draw with it");
@@ -220,6 +224,11 @@ int playTets(cli::Session& session, const Options& options) {
   const hypermesh::File file = unwrap(hypermesh::File::open(options.inputs[0]));
   session.dependsOn(options.inputs[0]);
   if (!options.camera.empty()) session.dependsOn(options.camera);
+  if (!options.at.empty() && !options.times.empty())
+    throw Error(FaultCode::kUsage, "", "", "--at and --times are both given", "give one of the two");
+  if (!options.coloring.color.empty() || !options.coloring.range.empty() || options.coloring.shading == "file")
+    throw Error(FaultCode::kUsage, "", "--renderer tets", "knows neither columns nor normals of the file",
+                "draw the .t4d of the hypermesh: dyntri-build");
   const std::string all = "0f:" + std::to_string(file.times().size() - 1) + "f:1f";
   const std::string& asked = !options.at.empty() ? options.at : options.times;
   const std::vector<SliceTime> times = unwrap(parseTimeList(asked.empty() ? all : asked, file.times()));
@@ -239,13 +248,14 @@ host::PlayerRequest requestOf(cli::Session& session, const Options& options) {
   request.width = options.size[0];
   request.height = options.size[1];
   request.samples = static_cast<std::uint32_t>(options.samples);
-  request.smooth = !options.flat;
+  request.smooth = !options.flat && options.coloring.shading != "flat";
   const std::uint64_t half = session.memory().available() / 2;
   const std::uint64_t usual = session.options().memory_bytes != 0 ? half : host::usualPageBytes();
   request.budget_bytes = std::min(half, usual) / std::max<std::size_t>(1, options.inputs.size());
   request.budget_ms = options.budget_ms;
   request.typed = options.typed;
   request.quit_after = options.quit_after;
+  request.stop = outofcore::interruptRequested;
   request.screenshot = options.screenshot;
   if (options.at.empty() && options.camera.empty()) return request;
   std::vector<dyntri::File> opened;
@@ -263,6 +273,10 @@ void refuseFilmOptions(const Options& options, const cli::CommonOptions& common)
                                        {"--times", !options.times.empty()},
                                        {"--contact-sheet", !options.contact_sheet.empty()},
                                        {"--write-camera", !options.write_camera.empty()},
+                                       {"--color", !options.coloring.color.empty()},
+                                       {"--range", !options.coloring.range.empty()},
+                                       {"--shading file", options.coloring.shading == "file"},
+                                       {"--orbit", options.orbit_degrees != 0},
                                        {"--renderer tets", options.renderer == "tets"}}) {
     if (!is_given) continue;
     throw Error(
@@ -273,14 +287,19 @@ void refuseFilmOptions(const Options& options, const cli::CommonOptions& common)
 }
 
 int playInWindow(cli::Session& session, const Options& options) {
+  if (options.panels)
+    throw Error(FaultCode::kUsage, "", "--panels", "draws a picture into a file", "give --offscreen and -o too");
+  checkBudget(options);
   refuseFilmOptions(options, session.options());
   unwrap(host::runWindow(requestOf(session, options)));
+  session.progress().step(0);  // throws after an interrupt
   return 0;
 }
 
 int drawPanels(cli::Session& session, const Options& options) {
   const std::string& output = session.options().output;
   refuseFilmOptions(options, session.options());
+  checkBudget(options);
   if (output.empty() || output == "-" || !endsIn(output, ".png") || host::hasNumber(output)) {
     throw Error(FaultCode::kUsage, output, "--panels", "draws one picture, as PNG",
                 "give -o player.png, and --at for its time");
@@ -368,7 +387,8 @@ int main(int argc, char** argv) {
               cli::Choice{&o.coloring.shading, {"slice", "file", "flat"}})
       .option("--color", "NAME", "colour by a column; NAME:0, NAME:1 … a component, NAME:magnitude its length",
               &o.coloring.color)
-      .option("--range", "LO:HI", "values at the ends of the map; default: the column's in the file, read once",
+      .option("--range", "LO:HI",
+              "values at the ends of the map; default: all but the lowest and highest 1 % in the file, read once",
               &o.coloring.range)
       .option("--map", "NAME", "colours from low to high",
               cli::Choice{&o.coloring.map, {"viridis", "cividis", "inferno", "magma", "cool-warm", "grey"}})

@@ -1,3 +1,6 @@
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
 // tet4d-report: error against run time, as tables, plots and one page; and single comparisons.
 #include <filesystem>
 #include <functional>
@@ -25,6 +28,32 @@ struct Options {
   report::CompareOptions compare;
 };
 
+// A folder of this run's own inside the report's, gone with it however the run ends.
+class WorkFolder {
+ public:
+  explicit WorkFolder(const std::string& folder) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    fs::create_directories(folder, error);
+    path_ = fs::absolute(folder + "/.work-XXXXXX").string();
+    if (error || ::mkdtemp(path_.data()) == nullptr) {
+      const std::string why = error ? error.message() : std::string(std::strerror(errno));
+      path_.clear();
+      throw Error(FaultCode::kIo, folder, "--folder", "cannot be made or written: " + why, "name a folder");
+    }
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+  ~WorkFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 using Sweeps = std::function<std::vector<report::Section>(report::Bench&)>;
 
 int sweep(cli::Session& session, const Options& options, const std::string& title, const Sweeps& sweeps) {
@@ -32,17 +61,13 @@ int sweep(cli::Session& session, const Options& options, const std::string& titl
   if (options.full && options.quick) {
     throw Error(FaultCode::kUsage, "", "", "--full and --quick are both given", "leave one of them out");
   }
-  const std::string work = fs::absolute(options.folder + "/work").string();
-  std::error_code error;
-  fs::create_directories(work, error);
-  if (error)
-    throw Error(FaultCode::kIo, options.folder, "--folder", "cannot be made: " + error.message(), "name a folder");
+  const WorkFolder made(options.folder);
+  const std::string& work = made.path();
   const report::Programs programs(options.bin.empty() ? "" : fs::absolute(options.bin).string(), work);
   report::Rows rows(options.folder, report::contextOf(options.commit, options.bin, programs), options.resume);
   report::Bench bench{session, programs, rows, work, options.full, options.repeat};
   const std::vector<report::Section> sections = sweeps(bench);
   report::writePage(options.folder, title, sections, rows);
-  fs::remove_all(work, error);
   std::uint64_t failed = 0;
   for (const report::Row& row : rows.all()) failed += row.value("exit", 1) != 0 ? 1 : 0;
   session.stats().count("rows", rows.all().size());

@@ -112,6 +112,7 @@ std::vector<double> Timeline::filmTimes(unsigned between) const {
     for (unsigned k = 1; i + 1 < table_.size() && k <= between; ++k)
       add(table_[i] + (table_[i + 1] - table_[i]) * k / (between + 1));
   }
+  if (times.empty() && !table_.empty()) times.push_back(begin_);  // a range between two frames
   return times;
 }
 

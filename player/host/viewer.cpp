@@ -366,6 +366,10 @@ void Viewer::toggleFilm() {
   recorder_ = std::move(started).value();
 }
 
+void Viewer::endRecording() {
+  if (recorder_) toggleFilm();
+}
+
 void Viewer::endFilm() {
   say("wrote " + recorder_->name() + ", " + std::to_string(recorder_->taken()) +
       (recorder_->taken() == 1 ? " picture" : " pictures"));
@@ -489,6 +493,7 @@ void Viewer::act(Action action) {
       state_.help = false;
       return;
     default:
+      endRecording();
       state_.quit = true;
   }
 }

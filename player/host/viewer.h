@@ -29,7 +29,7 @@ namespace tet4d::host {
 struct ViewerOptions {
   std::uint32_t width = 1280, height = 720;  // framebuffer, pixels
   double scale = 1;                          // pixels a unit of the panels
-  std::uint32_t samples = 4;                 // of a picture at rest; while something moves there is one
+  std::uint32_t samples = 4;                 // of a picture at rest; while something moves as many as the budget allows
   bool smooth = true, panels = true;
   std::uint64_t budget_bytes = std::uint64_t{1} << 30;  // of pages kept, of each file
   unsigned threads = 2;
@@ -90,6 +90,8 @@ class Viewer {
 
   // Draws what frame() made into a framebuffer of the present size (0: the window's).
   Status present(unsigned framebuffer);
+  // Ends a film that is being recorded; what there is of it is kept. Before the viewer goes.
+  void endRecording();
   // The same into a framebuffer of its own, read back; what the window's shows.
   Result<render::Image> screenshot();
   Result<render::Image> readWindow();

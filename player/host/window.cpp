@@ -239,7 +239,8 @@ Status saveWindow(Viewer& viewer, const std::string& path) {
 Status loop(GLFWwindow* window, Viewer& viewer, const PlayerRequest& request) {
   double last = glfwGetTime();
   std::uint64_t shown = 0;
-  while (glfwWindowShouldClose(window) == GLFW_FALSE && !viewer.state().quit) {
+  const auto isStopped = [&] { return request.stop && request.stop(); };
+  while (glfwWindowShouldClose(window) == GLFW_FALSE && !viewer.state().quit && !isStopped()) {
     const double now = glfwGetTime();
     const Viewer::Outcome outcome = viewer.frame(now - last);
     last = now;
@@ -252,10 +253,12 @@ Status loop(GLFWwindow* window, Viewer& viewer, const PlayerRequest& request) {
       glfwSwapBuffers(window);
     }
     const bool is_test = request.quit_after > 0;
-    waitForEvents(is_test ? std::min(outcome.wait_s, 0.05) : outcome.wait_s, glfwGetTime() - now);
+    const double most_wait_s = is_test ? 0.05 : request.stop ? 0.2 : outcome.wait_s;
+    waitForEvents(std::min(outcome.wait_s, most_wait_s), glfwGetTime() - now);
     // A test counts pictures also where nothing changes.
     if (is_test && !outcome.changed) viewer.wake();
   }
+  viewer.endRecording();
   return {};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@ struct PlayerRequest {
   std::optional<scene::Shot> shot;  // without: fitted
   std::string directory = ".";      // of what is saved
   std::string typed;                // keys pressed once everything is open; a tabulator is Tab, an escape Esc
+  std::function<bool()> stop;       // asked between pictures, at least five times a second: true closes the window
   // For tests: the window closes after so many pictures (0: never), and leaves what it shows in a file.
   std::uint64_t quit_after = 0;
   std::string screenshot;

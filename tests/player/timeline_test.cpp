@@ -110,6 +110,10 @@ TEST(TimelineStiff, OneFrameNoneAndStalls) {
   one.play(true);
   EXPECT_FALSE(one.playing());
   EXPECT_EQ(one.filmTimes(4), std::vector<double>{7});
+  Timeline between = timelineOf({0, 1, 2});
+  between.setBegin(1.25);
+  between.setEnd(1.5);
+  EXPECT_EQ(between.filmTimes(0), std::vector<double>{1.25}) << "a range between two frames";
   Timeline two = timelineOf({0, 1000, 2000, 3000, 4000, 5000, 6000, 7000});
   two.play(true);
   two.advance(3600);

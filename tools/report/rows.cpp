@@ -96,7 +96,7 @@ Rows::Rows(std::string folder, Context context, bool resume)
     }
   }
   if (!std::ofstream(path, std::ios::trunc)) {
-    throw Error(FaultCode::kIo, path, "", "cannot be written", "name a folder you may write to: -o report");
+    throw Error(FaultCode::kIo, path, "", "cannot be written", "name a folder you may write to: --folder report");
   }
 }
 
