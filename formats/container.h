@@ -107,6 +107,9 @@ class Reader {
   // For files that stay open while others may write: puts copies in the place of the mapped sections of these kinds, so
   // that they cannot change or vanish any more. Spans stay valid. O(their bytes).
   Status ownSections(std::span<const std::uint32_t> kinds);
+  // Takes what of the mapping has been read out of the process' memory: for passes over whole files, which read nothing
+  // twice. Spans stay valid; what is read again comes from the system's cache. Does nothing after ownSections().
+  void dropResident() const;
   // Copies bytes from the open file, past the mapping: a file that was cut off is a Fault here, and a signal where the
   // mapping is read. Thread-safe.
   Status readAt(std::uint64_t offset, std::span<std::byte> out) const;
@@ -171,6 +174,7 @@ class Reader {
   std::string path_;
   Descriptor descriptor_;
   Identity identity_;
+  bool owns_sections_ = false;
   std::unique_ptr<const std::byte[], Unmap> data_;
   std::size_t size_ = 0;
   FileHeader header_{};

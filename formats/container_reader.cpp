@@ -214,6 +214,7 @@ std::optional<Reader::Identity> Reader::identify(int fd, const char* path) {
 
 Status Reader::ownSections(std::span<const std::uint32_t> kinds) {
   const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  owns_sections_ = true;
   for (const SectionEntry& s : sections_) {
     const bool is_wanted = std::find(kinds.begin(), kinds.end(), s.kind) != kinds.end();
     if (!is_wanted || (s.flags & kSectionPaged) != 0 || s.bytes == 0) continue;
@@ -226,6 +227,11 @@ Status Reader::ownSections(std::span<const std::uint32_t> kinds) {
       return status;
   }
   return {};
+}
+
+void Reader::dropResident() const {
+  // Pages of the mapping are clean and the file's; copies would be lost.
+  if (!owns_sections_) static_cast<void>(madvise(const_cast<std::byte*>(data_.get()), size_, MADV_DONTNEED));
 }
 
 Status Reader::readAt(std::uint64_t offset, std::span<std::byte> out) const {

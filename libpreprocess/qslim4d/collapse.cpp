@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <atomic>
 #include <utility>
 
 namespace tet4d::qslim4d {
@@ -22,6 +22,25 @@ bool has(const hypermesh::Tet& tet, std::uint32_t v) {
 std::uint64_t edgeOf(std::uint32_t a, std::uint32_t b) {
   return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
 }
+
+// Whether an angle with this dot product, of vectors whose squared lengths have this product, is at most 75 degrees.
+bool isTurnSmall(double dot, double lengths2) { return dot >= 0 && dot * dot >= kLeastTurn * kLeastTurn * lengths2; }
+
+// The 2x2 minors of two edges: the 4D cross product but for its first factor.
+struct Minors {
+  double xy, xz, xt, yz, yt, zt;
+  Minors(const glm::dvec4& v, const glm::dvec4& w)
+      : xy(v.x * w.y - v.y * w.x),
+        xz(v.x * w.z - v.z * w.x),
+        xt(v.x * w.w - v.w * w.x),
+        yz(v.y * w.z - v.z * w.y),
+        yt(v.y * w.w - v.w * w.y),
+        zt(v.z * w.w - v.w * w.z) {}
+  glm::dvec4 cross(const glm::dvec4& u) const {
+    return {u.y * zt - u.z * yt + u.w * yz, -(u.x * zt - u.z * xt + u.w * xz), u.x * yt - u.y * xt + u.w * xy,
+            -(u.x * yz - u.y * xz + u.z * xy)};
+  }
+};
 
 template <class T>
 bool holds(const std::vector<T>& few, const T& item) {
@@ -60,84 +79,96 @@ bool Collapser::evaluate(std::uint32_t u, std::uint32_t v, Placement& placement)
   return true;
 }
 
-std::uint32_t Collapser::starSize(std::uint32_t v) const {
-  std::uint32_t size = 0;
-  mesh_->forEachTet(v, [&](std::uint32_t, std::uint32_t) { ++size; });
-  return size;
+// The tetrahedra at v, apart from those with `other`.
+void Collapser::gatherApart(std::uint32_t v, std::uint32_t other, std::vector<Corner>& apart) const {
+  apart.clear();
+  mesh_->prefetchStar(v);
+  for (const std::uint32_t c : mesh_->starOf(v)) {
+    const hypermesh::Tet& tet = mesh_->tets[c / 4];
+    if (tet[0] != kNone && !has(tet, other)) apart.push_back({tet, c});
+  }
 }
 
-// Edges and faces of the link of v, apart from its tetrahedra with `other`, all of whose vertices lie in Lk(uv).
-void Collapser::sharedPieces(std::uint32_t v, std::uint32_t other, std::vector<Edge>& edges, std::vector<Face>& faces) {
-  edges.clear(), faces.clear();
-  mesh_->forEachTet(v, [&](std::uint32_t t, std::uint32_t corner) {
-    const hypermesh::Tet& tet = mesh_->tets[t];
-    if (has(tet, other)) return;
-    Face shared{};
-    std::size_t n = 0;
-    for (std::uint32_t i = 0; i < 4; ++i)
-      if (i != corner && (marks_[tet[i]] & kOfBoth) != 0) shared[n++] = tet[i];
-    if (n < 2) return;
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = i + 1; j < n; ++j) edges.push_back(edgeOf(shared[i], shared[j]));
-    if (n < 3) return;
-    std::sort(shared.begin(), shared.end());
-    faces.push_back(shared);
-  });
-}
-
-// Lk(u) and Lk(v) may share what is in Lk(uv) and nothing else. Vertices first; edges and faces in both links then have
-// their corners among the few of Lk(uv).
-bool Collapser::linksAllow(std::uint32_t u, std::uint32_t v) {
+void Collapser::gather(std::uint32_t u, std::uint32_t v) {
+  mesh_->prefetchStar(v);
+  gatherApart(u, v, apart_u_);
+  apart_v_.clear();
   link_edges_.clear();
-  mesh_->forEachTet(v, [&](std::uint32_t t, std::uint32_t) {
-    const hypermesh::Tet& tet = mesh_->tets[t];
-    if (!has(tet, u)) return;
+  for (const std::uint32_t c : mesh_->starOf(v)) {
+    const hypermesh::Tet& tet = mesh_->tets[c / 4];
+    if (tet[0] == kNone) continue;
+    if (!has(tet, u)) {
+      apart_v_.push_back({tet, c});
+      continue;
+    }
     std::array<std::uint32_t, 4> rest{};
     std::size_t n = 0;
     for (const std::uint32_t w : tet)
       if (w != u && w != v) rest[n++] = w;
     link_edges_.push_back(edgeOf(rest[0], rest[1]));
-    marks_[rest[0]] |= kOfBoth;
-    marks_[rest[1]] |= kOfBoth;
-  });
+  }
+}
+
+// Edges and faces of a link all of whose vertices lie in Lk(uv).
+void Collapser::sharedPieces(const std::vector<Corner>& apart, std::vector<Edge>& edges, std::vector<Face>& faces) {
+  edges.clear(), faces.clear();
+  for (const auto& [tet, number] : apart) {
+    Face shared{};
+    std::size_t n = 0;
+    for (std::uint32_t i = 0; i < 4; ++i)
+      if (i != number % 4 && (marks_[tet[i]] & kOfBoth) != 0) shared[n++] = tet[i];
+    if (n < 2) continue;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = i + 1; j < n; ++j) edges.push_back(edgeOf(shared[i], shared[j]));
+    if (n < 3) continue;
+    std::sort(shared.begin(), shared.end());
+    faces.push_back(shared);
+  }
+}
+
+// Lk(u) and Lk(v) may share what is in Lk(uv) and nothing else. Vertices first; edges and faces in both links then have
+// their corners among the few of Lk(uv).
+bool Collapser::linksAllow() {
   if (link_edges_.empty()) return false;
-  mesh_->forEachTet(u, [&](std::uint32_t t, std::uint32_t) {
-    if (has(mesh_->tets[t], v)) return;
-    for (const std::uint32_t w : mesh_->tets[t]) marks_[w] |= kOfU;
-  });
-  bool allowed = true;
-  mesh_->forEachTet(v, [&](std::uint32_t t, std::uint32_t) {
-    if (!allowed || has(mesh_->tets[t], u)) return;
-    for (const std::uint32_t w : mesh_->tets[t])
-      if (w != v && (marks_[w] & (kOfU | kOfBoth)) == kOfU) allowed = false;
-  });
-  if (!allowed) return false;
-  sharedPieces(u, v, edges_u_, faces_u_);
-  sharedPieces(v, u, edges_v_, faces_v_);
+  marks_.begin(3 * (apart_u_.size() + apart_v_.size()) + 2 * link_edges_.size());
+  for (const Edge edge : link_edges_)
+    marks_[static_cast<std::uint32_t>(edge >> 32)] = marks_[static_cast<std::uint32_t>(edge)] = kOfBoth;
+  for (const auto& [tet, number] : apart_u_)
+    for (const std::uint32_t w : tet) marks_[w] |= kOfU;
+  for (const auto& [tet, number] : apart_v_) {
+    for (std::uint32_t i = 0; i < 4; ++i)
+      if (i != number % 4 && marks_[tet[i]] == kOfU) return false;
+  }
+  sharedPieces(apart_u_, edges_u_, faces_u_);
+  sharedPieces(apart_v_, edges_v_, faces_v_);
   if (haveCommon(faces_u_, faces_v_)) return false;
   return std::none_of(edges_u_.begin(), edges_u_.end(),
                       [&](Edge edge) { return holds(edges_v_, edge) && !holds(link_edges_, edge); });
 }
 
-// Edges of the link of v in one of its triangles only: the boundary as seen from v.
-void Collapser::readBorder(std::uint32_t v, std::vector<Edge>& border) const {
+// Edges of a vertex's link in one of its triangles only: the boundary as seen from it. `other` is the edge's other end.
+void Collapser::readBorder(const std::vector<Corner>& apart, std::uint32_t other, std::vector<Edge>& border) const {
   border.clear();
-  mesh_->forEachTet(v, [&](std::uint32_t t, std::uint32_t corner) {
+  for (const auto& [tet, number] : apart) {
     std::array<std::uint32_t, 3> opposite{};
     std::size_t n = 0;
     for (std::uint32_t i = 0; i < 4; ++i)
-      if (i != corner) opposite[n++] = mesh_->tets[t][i];
+      if (i != number % 4) opposite[n++] = tet[i];
     border.insert(border.end(), {edgeOf(opposite[0], opposite[1]), edgeOf(opposite[0], opposite[2]),
                                  edgeOf(opposite[1], opposite[2])});
-  });
+  }
+  for (const Edge edge : link_edges_) {
+    const auto a = static_cast<std::uint32_t>(edge >> 32), b = static_cast<std::uint32_t>(edge);
+    border.insert(border.end(), {edge, edgeOf(a, other), edgeOf(b, other)});
+  }
   keepSingles(border);
 }
 
 // The same with the boundary coned to one more vertex: its cone over a face of the boundary is a tetrahedron.
 bool Collapser::bordersAllow(std::uint32_t u, std::uint32_t v) {
   if (mesh_->is_boundary[u] == 0 || mesh_->is_boundary[v] == 0) return true;
-  readBorder(u, border_u_);
-  readBorder(v, border_v_);
+  readBorder(apart_u_, v, border_u_);
+  readBorder(apart_v_, u, border_v_);
   const auto touches = [](const std::vector<Edge>& border, std::uint32_t w) {
     return std::any_of(border.begin(), border.end(), [&](Edge edge) {
       return static_cast<std::uint32_t>(edge >> 32) == w || static_cast<std::uint32_t>(edge) == w;
@@ -153,79 +184,65 @@ bool Collapser::bordersAllow(std::uint32_t u, std::uint32_t v) {
   return !haveCommon(border_u_, border_v_);
 }
 
-// The tetrahedra at v without `other`, with v moved to `at`.
-Verdict Collapser::judgeStar(std::uint32_t v, std::uint32_t other, const Vec4f& at) const {
-  Verdict verdict = Verdict::kAllowed;
-  mesh_->forEachTet(v, [&](std::uint32_t t, std::uint32_t corner) {
-    const hypermesh::Tet& tet = mesh_->tets[t];
-    if (verdict != Verdict::kAllowed || tet[0] == other || tet[1] == other || tet[2] == other || tet[3] == other)
-      return;
-    std::array<Vec4f, 4> p{};
-    for (std::size_t i = 0; i < 4; ++i) p[i] = mesh_->positions[tet[i]];
-    // From the corner that stays first, so that both normals are formed from the same differences but one.
-    const std::size_t base = corner == 0 ? 1 : 0;
-    const auto normalOf = [&] {
-      std::array<glm::dvec4, 3> edges{};
-      std::size_t n = 0;
-      for (std::size_t i = 0; i < 4; ++i)
-        if (i != base) edges[n++] = difference(p[i], p[base]);
-      return cross4(edges[0], edges[1], edges[2]);
-    };
-    const glm::dvec4 before = normalOf();
-    p[corner] = at;
-    const glm::dvec4 after = normalOf();
-    if (p[0].t == p[1].t && p[1].t == p[2].t && p[2].t == p[3].t) {
-      verdict = Verdict::kFlatTime;
-      return;
-    }
-    double longest = 0;
+// The tetrahedra of a vertex that moves away from the other end, with the vertex moved from `from` to `at`.
+//
+// A tetrahedron's normal is linear in each corner: the minors of the face that stays serve for both places.
+Verdict Collapser::judgeStar(const std::vector<Corner>& apart, const Vec4f& from, const Vec4f& at) const {
+  const Space& space = mesh_->space;
+  for (const auto& [tet, number] : apart) {
+    std::array<const Vec4f*, 3> p{};
+    std::size_t n = 0;
     for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = i + 1; j < 4; ++j) longest = std::max(longest, mesh_->space.extent(difference(p[i], p[j])));
-    const glm::dvec3 was = mesh_->space.spatialNormal(before), is = mesh_->space.spatialNormal(after);
-    const double scaled_is = mesh_->space.speed * glm::length(is);
-    const double volume = std::sqrt(scaled_is * scaled_is + after.w * after.w);
-    if (!(volume > kLeastVolume * longest * longest * longest)) {
-      verdict = Verdict::kFlip;
-      return;
-    }
+      if (i != number % 4) p[n++] = &mesh_->positions[tet[i]];
+    if (p[0]->t == at.t && p[1]->t == at.t && p[2]->t == at.t) return Verdict::kFlatTime;
+    const glm::dvec4 a = difference(*p[1], *p[0]), b = difference(*p[2], *p[0]), to = difference(at, *p[0]);
+    const Minors minors(a, b);
+    const glm::dvec4 before = minors.cross(difference(from, *p[0])), after = minors.cross(to);
+    const glm::dvec4 la = space.toLengths(a), lb = space.toLengths(b), lto = space.toLengths(to);
+    const double longest2 =
+        std::max({glm::dot(la, la), glm::dot(lb, lb), glm::dot(lto, lto), glm::dot(la - lb, la - lb),
+                  glm::dot(la - lto, la - lto), glm::dot(lb - lto, lb - lto)});
+    const glm::dvec3 was = space.spatialNormal(before), is = space.spatialNormal(after);
+    const double speed2 = space.speed * space.speed, was2 = glm::dot(was, was), is2 = glm::dot(is, is);
+    const double volume2 = speed2 * is2 + after.w * after.w;
+    if (!(volume2 > kLeastVolume * kLeastVolume * longest2 * longest2 * longest2)) return Verdict::kFlip;
     // Spatial normals, for they are what a slice shows; where the surface jumps there is none, and the whole normal
     // counts.
-    const double lengths = glm::length(was) * glm::length(is);
-    const double slope_before = mesh_->space.speed * glm::length(was);
-    if (slope_before > 1e-3 * std::abs(before.w)) {
-      if (!(glm::dot(was, is) >= kLeastTurn * lengths) || lengths == 0) verdict = Verdict::kFlip;
-    } else {
-      const double s = mesh_->space.speed * mesh_->space.speed;
-      const double dot = s * glm::dot(was, is) + before.w * after.w;
-      const double size = std::sqrt(slope_before * slope_before + before.w * before.w) * volume;
-      if (!(dot >= kLeastTurn * size)) verdict = Verdict::kFlip;
+    const double dot = glm::dot(was, is);
+    if (speed2 * was2 > 1e-6 * before.w * before.w) {
+      if (!isTurnSmall(dot, was2 * is2) || is2 == 0) return Verdict::kFlip;
+    } else if (!isTurnSmall(speed2 * dot + before.w * after.w, (speed2 * was2 + before.w * before.w) * volume2)) {
+      return Verdict::kFlip;
     }
-  });
-  return verdict;
+  }
+  return Verdict::kAllowed;
 }
 
 // The cheap tests first, and those that refuse most.
 Verdict Collapser::judge(std::uint32_t u, std::uint32_t v, const Vec4f& at) {
-  const std::uint32_t size_u = starSize(u), size_v = starSize(v);
-  std::uint32_t both = 0;
-  mesh_->forEachTet(v, [&](std::uint32_t t, std::uint32_t) { both += has(mesh_->tets[t], u) ? 1 : 0; });
-  const std::uint32_t left = size_u + size_v - 2 * both;
+  gather(u, v);
+  const std::size_t left = apart_u_.size() + apart_v_.size();
   if (left > rules_.most_star) return Verdict::kStar;
   if (left == 0) return Verdict::kLinks;  // nothing would be left of the component
-  if (const Verdict verdict = judgeStar(u, v, at); verdict != Verdict::kAllowed) return verdict;
-  if (const Verdict verdict = judgeStar(v, u, at); verdict != Verdict::kAllowed) return verdict;
-  marks_.begin(3 * (std::size_t{size_u} + size_v));
-  return linksAllow(u, v) && bordersAllow(u, v) ? Verdict::kAllowed : Verdict::kLinks;
+  if (const Verdict verdict = judgeStar(apart_u_, mesh_->positions[u], at); verdict != Verdict::kAllowed)
+    return verdict;
+  if (const Verdict verdict = judgeStar(apart_v_, mesh_->positions[v], at); verdict != Verdict::kAllowed)
+    return verdict;
+  return linksAllow() && bordersAllow(u, v) ? Verdict::kAllowed : Verdict::kLinks;
 }
 
 std::uint32_t Collapser::collapse(std::uint32_t u, std::uint32_t v, const Vec4f& at) {
+  makeRoom(*mesh_, std::uint64_t{mesh_->stars[u].size} + mesh_->stars[v].size);
+  return merge(u, v, at);
+}
+
+std::uint32_t Collapser::merge(std::uint32_t u, std::uint32_t v, const Vec4f& at) {
   SlimMesh& mesh = *mesh_;
-  const Vec4f from_u = mesh.positions[u], from_v = mesh.positions[v];
+  gatherApart(u, v, apart_u_);
+  apart_v_.clear();
   std::uint32_t removed = 0;
-  // v's list: tetrahedra with u die, in the others u takes v's place. What stays is chained on to u's list.
-  std::uint32_t first = kNone, last = kNone;
-  for (std::uint32_t c = mesh.head[v], next = kNone; c != kNone; c = next) {
-    next = mesh.next[c];
+  // Tetrahedra with both ends die, in v's others u takes v's place.
+  for (const std::uint32_t c : mesh.starOf(v)) {
     hypermesh::Tet& tet = mesh.tets[c / 4];
     if (tet[0] == kNone) continue;
     if (has(tet, u)) {
@@ -234,23 +251,21 @@ std::uint32_t Collapser::collapse(std::uint32_t u, std::uint32_t v, const Vec4f&
       continue;
     }
     tet[c % 4] = u;
-    (first == kNone ? first : mesh.next[last]) = c;
-    last = c;
+    apart_v_.push_back({tet, c});
   }
-  if (last != kNone) mesh.next[last] = kNone;
-  std::uint32_t tail = kNone;
-  std::uint32_t* link = &mesh.head[u];
-  for (std::uint32_t c = mesh.head[u]; c != kNone; c = mesh.next[c]) {
-    if (!mesh.isLive(c / 4)) continue;
-    *link = c;
-    link = &mesh.next[c];
-    tail = c;
-  }
-  *link = first;
-  mesh.tail[u] = last != kNone ? last : tail;
-  mesh.head[v] = mesh.tail[v] = kNone;
-  mesh.quadrics[u] = mesh.quadrics[u].about(difference(at, from_u));
-  mesh.quadrics[u].add(mesh.quadrics[v].about(difference(at, from_v)));
+  Star star = mesh.stars[u];
+  const std::size_t size = apart_u_.size() + apart_v_.size();
+  if (size > star.size)
+    star.begin =
+        static_cast<std::uint32_t>(std::atomic_ref(mesh.corners_used).fetch_add(size, std::memory_order_relaxed));
+  star.size = static_cast<std::uint32_t>(size);
+  std::uint32_t* to = mesh.corners.data() + star.begin;
+  for (const std::vector<Corner>* apart : {&apart_u_, &apart_v_})
+    for (const Corner& corner : *apart) *to++ = corner.number;
+  mesh.stars[u] = star;
+  mesh.stars[v] = {};
+  mesh.quadrics[u] = mesh.quadrics[u].about(difference(at, mesh.positions[u]));
+  mesh.quadrics[u].add(mesh.quadrics[v].about(difference(at, mesh.positions[v])));
   mesh.positions[u] = at;
   mesh.walls[u] |= mesh.walls[v];
   mesh.is_boundary[u] |= mesh.is_boundary[v];
@@ -259,10 +274,14 @@ std::uint32_t Collapser::collapse(std::uint32_t u, std::uint32_t v, const Vec4f&
 
 std::span<const std::uint32_t> Collapser::neighbours(std::uint32_t v) {
   neighbours_.clear();
-  marks_.begin(3 * std::size_t{starSize(v)});
+  mesh_->prefetchStar(v);
+  marks_.begin(3 * std::size_t{mesh_->stars[v].size});
   mesh_->forEachTet(v, [&](std::uint32_t tet, std::uint32_t) {
     for (const std::uint32_t w : mesh_->tets[tet]) {
       if (w == v || std::exchange(marks_[w], 1) != 0) continue;
+      // The caller will look at the edge's quadric.
+      const auto* quadric = reinterpret_cast<const char*>(&mesh_->quadrics[w]);
+      __builtin_prefetch(quadric), __builtin_prefetch(quadric + 64), __builtin_prefetch(&mesh_->positions[w]);
       neighbours_.push_back(w);
     }
   });

@@ -36,9 +36,11 @@ class Collapser {
   // equal times or without volume, the star's size. O(stars).
   Verdict judge(std::uint32_t u, std::uint32_t v, const Vec4f& at);
 
-  // Collapses u and v into u at `at`. The edge must have been judged kAllowed. O(star of v). Returns the number of
-  // tetrahedra removed; the mesh's counts are the caller's to update.
+  // Collapses u and v into u at `at`. The edge must have been judged kAllowed. O(stars). Returns the number of
+  // tetrahedra removed; the mesh's counts are the caller's to update. Not beside other threads: it may make room.
   std::uint32_t collapse(std::uint32_t u, std::uint32_t v, const Vec4f& at);
+  // The same where makeRoom() has been called for the stars of all that collapse meanwhile.
+  std::uint32_t merge(std::uint32_t u, std::uint32_t v, const Vec4f& at);
 
   // The vertices that share a tetrahedron with v, each once, in order of first use. Valid until the next call.
   std::span<const std::uint32_t> neighbours(std::uint32_t v);
@@ -46,17 +48,24 @@ class Collapser {
  private:
   using Edge = std::uint64_t;  // smaller vertex in the high half
   using Face = std::array<std::uint32_t, 3>;
-  bool linksAllow(std::uint32_t u, std::uint32_t v);
-  void sharedPieces(std::uint32_t v, std::uint32_t other, std::vector<Edge>& edges, std::vector<Face>& faces);
-  void readBorder(std::uint32_t v, std::vector<Edge>& border) const;
+  struct Corner {
+    hypermesh::Tet tet;
+    std::uint32_t number;  // 4 * tetrahedron + the vertex's place in it
+  };
+  void gather(std::uint32_t u, std::uint32_t v);
+  void gatherApart(std::uint32_t v, std::uint32_t other, std::vector<Corner>& apart) const;
+  bool linksAllow();
+  void sharedPieces(const std::vector<Corner>& apart, std::vector<Edge>& edges, std::vector<Face>& faces);
+  void readBorder(const std::vector<Corner>& apart, std::uint32_t other, std::vector<Edge>& border) const;
   bool bordersAllow(std::uint32_t u, std::uint32_t v);
-  Verdict judgeStar(std::uint32_t v, std::uint32_t other, const Vec4f& at) const;
-  std::uint32_t starSize(std::uint32_t v) const;
+  Verdict judgeStar(const std::vector<Corner>& apart, const Vec4f& from, const Vec4f& at) const;
 
   SlimMesh* mesh_;
   CollapseRules rules_;
   VertexMarks marks_;
-  std::vector<Edge> link_edges_;  // the link of the edge uv
+  // Of the edge that is looked at: tetrahedra at u without v, at v without u, and the edge's link.
+  std::vector<Corner> apart_u_, apart_v_;
+  std::vector<Edge> link_edges_;
   std::vector<Edge> edges_u_, edges_v_, border_u_, border_v_;
   std::vector<Face> faces_u_, faces_v_;
   std::vector<std::uint32_t> neighbours_;

@@ -9,6 +9,7 @@
 #include "libpreprocess/error.h"
 #include "libpreprocess/exchange/foreign_runs.h"
 #include "libpreprocess/exchange/mesh_pages.h"
+#include "libpreprocess/outofcore/huge_pages.h"
 
 namespace tet4d::qslim4d {
 namespace {
@@ -38,12 +39,16 @@ struct Packed {
 };
 
 Packed pack(const SlimMesh& mesh) {
+  std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
+    if (!mesh.isLive(t)) continue;
+    for (const std::uint32_t v : mesh.tets[t]) number[v] = 0;
+  }
   std::vector<std::uint32_t> order;
-  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
-    if (mesh.head[v] != kNone) order.push_back(v);
+  for (std::uint32_t v = 0; v < number.size(); ++v)
+    if (number[v] != kNone) order.push_back(v);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return mesh.positions[a].t < mesh.positions[b].t; });
-  std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
   Packed packed;
   for (const std::uint32_t v : order) {
     number[v] = static_cast<std::uint32_t>(packed.vertices.size());
@@ -82,8 +87,8 @@ std::size_t pageEnd(const Packed& packed, std::size_t begin) {
 
 std::uint64_t boundMemory(const hypermesh::File& file) {
   const hypermesh::MeshHeader& header = file.header();
-  // Edges: about 7 a vertex and 12 bytes each, in a vector that doubles; what a round holds beside them.
-  constexpr std::uint64_t kEdgeBytes = 7 * 12 * 2, kRoundBytes = 32;
+  // The list: 2.5 edges a vertex and 12 bytes each; what a round holds beside it.
+  constexpr std::uint64_t kEdgeBytes = 40, kRoundBytes = 32;
   std::uint64_t page = 0;
   for (std::size_t k = 0; k < file.geometryPages(); ++k) page = std::max(page, file.gatherBytes(k));
   return slimMeshBytes(header.vertices, header.tets) + header.vertices * (kEdgeBytes + kRoundBytes) + page;
@@ -94,8 +99,8 @@ SlimMesh readMesh(const hypermesh::File& file, Metric metric, outofcore::Progres
   progress.phase("read", file.geometryPages());
   std::vector<Vec4f> positions;
   std::vector<hypermesh::Tet> tets;
-  positions.reserve(file.header().vertices);
-  tets.reserve(file.header().tets);
+  outofcore::reserveHuge(positions, file.header().vertices);
+  outofcore::reserveHuge(tets, file.header().tets);
   std::size_t pages = 0;
   exchange::forEachPage(file, [&](const hypermesh::GatheredPage& page) {
     positions.insert(positions.end(), page.view.vertices.begin(), page.view.vertices.end());
@@ -104,6 +109,7 @@ SlimMesh readMesh(const hypermesh::File& file, Metric metric, outofcore::Progres
       tets.push_back({static_cast<std::uint32_t>(numbers[tet[0]]), static_cast<std::uint32_t>(numbers[tet[1]]),
                       static_cast<std::uint32_t>(numbers[tet[2]]), static_cast<std::uint32_t>(numbers[tet[3]])});
     }
+    file.reader().dropResident();
     progress.step(++pages);
   });
   try {

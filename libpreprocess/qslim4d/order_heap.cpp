@@ -19,7 +19,7 @@ class HeapOrder {
 
   void run() {
     for (std::uint32_t v = 0; v < best_.size(); ++v)
-      if (mesh_.head[v] != kNone) scan(v);
+      if (mesh_.isUsed(v)) scan(v);
     for (std::uint64_t n = 0; !ledger_.isDone() && !heap_.empty(); ++n) {
       if (n % kTellEvery == 0) ledger_.tell();
       collapseTop();

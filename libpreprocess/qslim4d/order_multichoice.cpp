@@ -33,15 +33,14 @@ class Multichoice {
  public:
   Multichoice(SlimMesh& mesh, const Options& options, Ledger& ledger)
       : mesh_(mesh), options_(options), ledger_(ledger), collapser_(mesh, options.rules), random_(options.seed) {
-    for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet)
-      if (mesh.isLive(tet)) live_.push_back(tet);
+    listLive();
   }
 
   void run() {
     std::uint64_t in_vain = 0;
     while (!ledger_.isDone() && in_vain <= kPatience * mesh_.live_tets) {
       if (ledger_.stats.rounds++ % kTellEvery == 0) ledger_.tell();
-      if (live_.size() > 2 * mesh_.live_tets) forgetDead();
+      if (live_.size() > 2 * mesh_.live_tets) listLive();
       in_vain = drawAndCollapse() ? 0 : in_vain + options_.choices;
     }
   }
@@ -52,8 +51,10 @@ class Multichoice {
     std::uint32_t u, v;
   };
 
-  void forgetDead() {
-    std::erase_if(live_, [&](std::uint32_t tet) { return !mesh_.isLive(tet); });
+  void listLive() {
+    live_.clear();
+    for (std::uint32_t tet = 0; tet < mesh_.tets.size(); ++tet)
+      if (mesh_.isLive(tet)) live_.push_back(tet);
   }
 
   // An edge of a random tetrahedron: edges of many tetrahedra come up more often, and their collapses save more.
@@ -85,7 +86,9 @@ class Multichoice {
     const Verdict verdict = collapser_.judge(choice.u, choice.v, choice.placement.at);
     ledger_.judged(verdict);
     if (verdict != Verdict::kAllowed) return false;
+    const std::size_t tets = mesh_.tets.size();
     ledger_.collapsed(collapser_.collapse(choice.u, choice.v, choice.placement.at), choice.placement);
+    if (mesh_.tets.size() != tets) listLive();  // they have new numbers
     return true;
   }
 

@@ -1,11 +1,12 @@
-// Rounds of cheap edges that do not touch one another. Every edge's cost is kept with it and worked out anew only when
-// one of its ends has moved, so a collapse costs the evaluation of the new vertex's edges and nothing else.
+// Rounds of cheap edges that do not touch one another. The cheap edges of the mesh are listed with their costs; a cost
+// is worked out anew only when one of the edge's ends has moved. When few are left on the list all edges are looked at
+// again, for a new one: the dear ones, which most edges are, take no memory. A list that led to nothing is followed by
+// one of the next dearer edges, until there are none.
 //
 // A round: the edges up to a cost that about a quarter of the vertices' number of edges stay below; of those in order
 // of cost, each whose ends no earlier one's star has claimed; all chosen ones are judged and collapsed in parallel. The
-// choice is sequential and depends on costs and numbers only: the same result for any number of threads.
+// choice is sequential and depends on costs and the list's order only: the same result for any number of threads.
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <limits>
@@ -17,10 +18,38 @@ namespace tet4d::qslim4d {
 namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
-constexpr std::size_t kChunk = 2048;  // items a task
+constexpr std::size_t kChunk = 256;        // chosen edges a task
+constexpr std::size_t kListChunk = 2048;   // vertices a task, when edges are listed
+constexpr std::size_t kListBatch = 64;     // tasks whose edges wait to be joined to the list
+constexpr std::size_t kSamples = 1 << 15;  // vertices whose edges tell how dear a list's dearest may be
+// Edges that a list begins with, for each living vertex.
+constexpr double kListPerVertex = 2.5;
 // Edges looked at in a round, for each living vertex and for each collapse that is still to be made.
 constexpr double kEdgesPerVertex = 0.25, kEdgesPerCollapse = 4;
 constexpr std::uint64_t kTetsPerCollapse = 5;
+
+// Numbers of edges by cost: the upper half of a float, 128 bins an octave.
+class CostHistogram {
+ public:
+  void add(float cost) {
+    ++bins_[std::bit_cast<std::uint32_t>(cost) >> 16];
+    ++total_;
+  }
+  std::uint64_t total() const { return total_; }
+  // The cost that `count` of them stay at or below; kNever if there are fewer.
+  float ofRank(std::uint64_t count) const {
+    std::uint64_t below = 0;
+    for (std::uint32_t bin = 0; bin < bins_.size(); ++bin) {
+      below += bins_[bin];
+      if (below >= count) return std::bit_cast<float>(bin << 16 | 0xFFFFu);
+    }
+    return kNever;
+  }
+
+ private:
+  std::vector<std::uint64_t> bins_ = std::vector<std::uint64_t>(std::size_t{1} << 15);  // no cost is negative
+  std::uint64_t total_ = 0;
+};
 
 class Passes {
  public:
@@ -30,24 +59,21 @@ class Passes {
         executor_(executor),
         ledger_(ledger),
         claimed_(mesh.positions.size(), 0),
-        merged_(mesh.positions.size(), 0) {}
+        merged_(mesh.positions.size(), 0),
+        touched_(mesh.positions.size(), 1) {}
 
   void run() {
-    std::vector<std::uint32_t> all;
-    for (std::uint32_t v = 0; v < mesh_.positions.size(); ++v)
-      if (mesh_.head[v] != kNone) all.push_back(v), merged_[v] = 1;
-    addEdgesOf(all);
-    bool has_hope = true;  // whether something has changed since the banned edges were last tried
+    if (!ledger_.isDone()) listEdges();
     while (!ledger_.isDone()) {
       ledger_.tell();
-      ++ledger_.stats.rounds;
-      choose();
-      if (chosen_.empty()) {
-        if (!has_hope || !unban()) return;
-        has_hope = false;
-        continue;
+      if (choose()) {
+        ++ledger_.stats.rounds;
+        has_changed_ |= collapseChosen();
+      } else if (has_changed_ || most_listed_ < kNever) {
+        listEdges();
+      } else {
+        return;
       }
-      has_hope |= collapseChosen();
     }
   }
 
@@ -57,16 +83,16 @@ class Passes {
     float cost;          // kNever: not allowed as things were when it was last judged
   };
   struct Chosen {
-    std::size_t edge;
-    std::uint32_t u, v;
-    Placement placement;
-    Verdict verdict = Verdict::kAllowed;
-    std::uint32_t removed = 0;
+    std::uint32_t u, v, edge;
+    std::uint32_t removed;
+    Verdict verdict;
+    bool aligned;
+    double error;
   };
 
-  void inChunks(std::size_t count, const std::function<void(std::size_t begin, std::size_t end)>& work) {
-    executor_.run((count + kChunk - 1) / kChunk,
-                  [&](std::size_t i) { work(i * kChunk, std::min(count, (i + 1) * kChunk)); });
+  void inChunks(std::size_t count, std::size_t chunk, const std::function<void(std::size_t, std::size_t)>& work) {
+    executor_.run((count + chunk - 1) / chunk,
+                  [&](std::size_t i) { work(i * chunk, std::min(count, (i + 1) * chunk)); });
   }
 
   float costOf(const Collapser& collapser, std::uint32_t u, std::uint32_t v) const {
@@ -75,36 +101,66 @@ class Passes {
     return static_cast<float>(placement.cost);
   }
 
-  // Appends the edges of `vertices`, whose merged_ is set; one between two of them once.
-  void addEdgesOf(const std::vector<std::uint32_t>& vertices) {
-    std::vector<std::vector<Edge>> found((vertices.size() + kChunk - 1) / kChunk);
-    inChunks(vertices.size(), [&](std::size_t begin, std::size_t end) {
+  // The cost that kListPerVertex edges a vertex dearer than `least` stay below, by a sample of vertices.
+  float costToList(float least) {
+    const std::size_t stride = mesh_.positions.size() / kSamples | 1;
+    const std::size_t count = (mesh_.positions.size() + stride - 1) / stride;
+    std::vector<std::vector<float>> costs((count + kChunk - 1) / kChunk);
+    inChunks(count, kChunk, [&](std::size_t begin, std::size_t end) {
       Collapser collapser(mesh_, options_.rules);
-      std::vector<Edge>& edges = found[begin / kChunk];
       for (std::size_t i = begin; i < end; ++i) {
-        const std::uint32_t u = vertices[i];
-        for (const std::uint32_t w : collapser.neighbours(u)) {
-          if (merged_[w] != 0 && w < u) continue;
-          const std::uint32_t a = std::min(u, w), b = std::max(u, w);
-          edges.push_back({a, b, costOf(collapser, a, b)});
-        }
+        const auto u = static_cast<std::uint32_t>(i * stride);
+        for (const std::uint32_t w : collapser.neighbours(u))
+          costs[begin / kChunk].push_back(costOf(collapser, std::min(u, w), std::max(u, w)));
       }
     });
-    for (const std::vector<Edge>& edges : found) edges_.insert(edges_.end(), edges.begin(), edges.end());
-    for (const std::uint32_t v : vertices) merged_[v] = 0;
+    CostHistogram histogram;
+    for (const std::vector<float>& some : costs)
+      for (const float cost : some)
+        if (cost > least && cost < kNever) histogram.add(cost);
+    std::uint64_t used = 0;
+    for (std::size_t i = 0; i < count; ++i) used += mesh_.isUsed(static_cast<std::uint32_t>(i * stride)) ? 1 : 0;
+    // A sampled vertex shows all its edges, each of which has two ends.
+    return histogram.ofRank(static_cast<std::uint64_t>(2 * kListPerVertex * static_cast<double>(used)) + 1);
   }
 
-  // The cost that `count` edges stay at or below, to 1/128: by a histogram over the upper half of the floats.
-  float costOfRank(std::size_t count) const {
-    std::vector<std::uint32_t> histogram(std::size_t{1} << 16);
-    for (const Edge& edge : edges_)
-      if (edge.cost < kNever) ++histogram[std::bit_cast<std::uint32_t>(edge.cost) >> 16];
-    std::size_t below = 0;
-    for (std::uint32_t bin = 0; bin < histogram.size(); ++bin) {
-      below += histogram[bin];
-      if (below >= count) return std::bit_cast<float>(bin << 16 | 0xFFFFu);
+  // The list anew: of the cheapest edges, refused ones too, for what is around them may have changed; of the next
+  // dearer ones where nothing has changed. Where the last list held the dearest, all others have been refused before:
+  // then those only whose surroundings have changed, so that a mesh with nothing left to collapse is not judged again
+  // and again.
+  void listEdges() {
+    if (mesh_.corners_used > 4 * mesh_.live_tets) tidy(mesh_);
+    const bool only_touched = most_listed_ == kNever;
+    const float least = has_changed_ ? -1 : most_listed_;
+    most_listed_ = costToList(least);
+    has_changed_ = false;
+    edges_.clear();
+    edges_.reserve(static_cast<std::size_t>(1.1 * kListPerVertex * static_cast<double>(mesh_.live_vertices)) + 1024);
+    for (std::size_t begin = 0; begin < mesh_.positions.size(); begin += kListBatch * kListChunk) {
+      const std::size_t count = std::min(kListBatch * kListChunk, mesh_.positions.size() - begin);
+      join(count, kListChunk, [&](Collapser& collapser, std::size_t i, std::vector<Edge>& edges) {
+        const auto u = static_cast<std::uint32_t>(begin + i);
+        for (const std::uint32_t w : collapser.neighbours(u))
+          if (u < w && (!only_touched || touched_[u] != 0 || touched_[w] != 0)) list(collapser, u, w, least, edges);
+      });
     }
-    return std::numeric_limits<float>::max();
+    std::fill(touched_.begin(), touched_.end(), std::uint8_t{0});
+  }
+
+  void list(const Collapser& collapser, std::uint32_t u, std::uint32_t v, float least, std::vector<Edge>& edges) const {
+    const float cost = costOf(collapser, u, v);
+    if (cost > least && cost <= most_listed_ && cost < kNever) edges.push_back({u, v, cost});
+  }
+
+  // Appends to the list what find(collapser, i, edges) gives for 0 <= i < count.
+  template <class Find>
+  void join(std::size_t count, std::size_t chunk, const Find& find) {
+    std::vector<std::vector<Edge>> found((count + chunk - 1) / chunk);
+    inChunks(count, chunk, [&](std::size_t begin, std::size_t end) {
+      Collapser collapser(mesh_, options_.rules);
+      for (std::size_t i = begin; i < end; ++i) find(collapser, i, found[begin / chunk]);
+    });
+    for (const std::vector<Edge>& edges : found) edges_.insert(edges_.end(), edges.begin(), edges.end());
   }
 
   void claimStar(std::uint32_t v) {
@@ -114,41 +170,74 @@ class Passes {
     });
   }
 
-  void choose() {
+  // What the edges after the k-th will read, in the order in which one address leads to the next.
+  void fetchAhead(const std::vector<std::uint64_t>& keys, std::size_t k) const {
+    const auto edgeAt = [&](std::size_t at) {
+      return edges_[static_cast<std::uint32_t>(keys[std::min(at, keys.size() - 1)])];
+    };
+    __builtin_prefetch(&edges_[static_cast<std::uint32_t>(keys[std::min(k + 16, keys.size() - 1)])]);
+    const Edge far = edgeAt(k + 12), near = edgeAt(k + 8), next = edgeAt(k + 4);
+    for (const std::uint32_t v : {far.u, far.v}) __builtin_prefetch(&mesh_.stars[v]), __builtin_prefetch(&claimed_[v]);
+    for (const std::uint32_t v : {near.u, near.v})
+      if (claimed_[v] != stamp_) __builtin_prefetch(mesh_.starOf(v).data());
+    if (claimed_[next.u] != stamp_ && claimed_[next.v] != stamp_)
+      mesh_.prefetchStar(next.u), mesh_.prefetchStar(next.v);
+  }
+
+  // The listed edges at or below the cost of rank `look`, cheapest first: cost and number in one.
+  std::vector<std::uint64_t> candidates(std::uint64_t look, const CostHistogram& histogram) const {
+    const float limit = histogram.ofRank(look);
+    std::vector<std::uint64_t> keys;
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      if (edges_[i].cost <= limit && edges_[i].cost < kNever)
+        keys.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(edges_[i].cost)} << 32 | i);
+    }
+    std::sort(keys.begin(), keys.end());
+    return keys;
+  }
+
+  // False if too few edges are left on the list: none, if it has led to nothing yet.
+  bool choose() {
     const std::uint64_t need = mesh_.live_tets - std::min(mesh_.live_tets, options_.target_tets);
-    const auto looked_at =
-        static_cast<std::size_t>(16 + std::min(kEdgesPerVertex * static_cast<double>(mesh_.live_vertices),
-                                               kEdgesPerCollapse * static_cast<double>(need / kTetsPerCollapse)));
-    const float limit = costOfRank(looked_at);
-    std::vector<std::size_t> candidates;
-    for (std::size_t i = 0; i < edges_.size(); ++i)
-      if (edges_[i].cost <= limit) candidates.push_back(i);
-    std::sort(candidates.begin(), candidates.end(), [&](std::size_t a, std::size_t b) {
-      const Edge &x = edges_[a], &y = edges_[b];
-      if (x.cost != y.cost) return x.cost < y.cost;
-      return std::pair(x.u, x.v) < std::pair(y.u, y.v);
-    });
+    const auto look =
+        static_cast<std::uint64_t>(16 + std::min(kEdgesPerVertex * static_cast<double>(mesh_.live_vertices),
+                                                 kEdgesPerCollapse * static_cast<double>(need / kTetsPerCollapse)));
+    CostHistogram histogram;
+    for (const Edge& edge : edges_)
+      if (edge.cost < kNever) histogram.add(edge.cost);
+    if (histogram.total() == 0 || (histogram.total() < look && most_listed_ < kNever && has_changed_)) return false;
     chosen_.clear();
     ++stamp_;
-    for (const std::size_t i : candidates) {
+    const std::vector<std::uint64_t> keys = candidates(look, histogram);
+    for (std::size_t k = 0; k < keys.size(); ++k) {
       if (chosen_.size() * kTetsPerCollapse > need) break;
+      const auto i = static_cast<std::uint32_t>(keys[k]);
+      fetchAhead(keys, k);
       const auto [u, v, cost] = edges_[i];
       if (claimed_[u] == stamp_ || claimed_[v] == stamp_) continue;
       claimStar(u), claimStar(v);
-      chosen_.push_back({i, u, v, {}, Verdict::kAllowed, 0});
+      chosen_.push_back({u, v, i, 0, Verdict::kAllowed, false, 0});
     }
+    // What lies side by side in memory is collapsed one after the other.
+    std::sort(chosen_.begin(), chosen_.end(), [](const Chosen& a, const Chosen& b) { return a.u < b.u; });
+    return true;
   }
 
   // True if a collapse was made.
   bool collapseChosen() {
-    inChunks(chosen_.size(), [&](std::size_t begin, std::size_t end) {
+    std::uint64_t corners = 0;
+    for (const Chosen& chosen : chosen_)
+      corners += std::uint64_t{mesh_.stars[chosen.u].size} + mesh_.stars[chosen.v].size;
+    makeRoom(mesh_, corners);
+    inChunks(chosen_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
       Collapser collapser(mesh_, options_.rules);
       for (std::size_t i = begin; i < end; ++i) {
         Chosen& chosen = chosen_[i];
-        static_cast<void>(collapser.evaluate(chosen.u, chosen.v, chosen.placement));
-        chosen.verdict = collapser.judge(chosen.u, chosen.v, chosen.placement.at);
-        if (chosen.verdict == Verdict::kAllowed)
-          chosen.removed = collapser.collapse(chosen.u, chosen.v, chosen.placement.at);
+        Placement placement;
+        static_cast<void>(collapser.evaluate(chosen.u, chosen.v, placement));
+        chosen.aligned = placement.aligned, chosen.error = placement.error;
+        chosen.verdict = collapser.judge(chosen.u, chosen.v, placement.at);
+        if (chosen.verdict == Verdict::kAllowed) chosen.removed = collapser.merge(chosen.u, chosen.v, placement.at);
       }
     });
     std::vector<std::uint32_t> moved;
@@ -156,30 +245,23 @@ class Passes {
       ledger_.judged(chosen.verdict);
       edges_[chosen.edge].cost = kNever;
       if (chosen.verdict != Verdict::kAllowed) continue;
-      ledger_.collapsed(chosen.removed, chosen.placement);
+      ledger_.collapsed(chosen.removed, chosen.aligned, chosen.error);
       moved.push_back(chosen.u);
       merged_[chosen.u] = merged_[chosen.v] = 1;
     }
     if (moved.empty()) return false;
     std::erase_if(edges_, [&](const Edge& edge) { return merged_[edge.u] != 0 || merged_[edge.v] != 0; });
-    for (const Chosen& chosen : chosen_)
-      if (chosen.verdict == Verdict::kAllowed) merged_[chosen.v] = 0;
-    addEdgesOf(moved);
-    return true;
-  }
-
-  // Gives every banned edge its cost back: what is around it may have changed. False if none has one.
-  bool unban() {
-    std::atomic<bool> any{false};
-    inChunks(edges_.size(), [&](std::size_t begin, std::size_t end) {
-      const Collapser collapser(mesh_, options_.rules);
-      for (std::size_t i = begin; i < end; ++i) {
-        if (edges_[i].cost < kNever) continue;
-        edges_[i].cost = costOf(collapser, edges_[i].u, edges_[i].v);
-        if (edges_[i].cost < kNever) any.store(true, std::memory_order_relaxed);
+    for (const Chosen& chosen : chosen_) merged_[chosen.v] = 0;
+    // An edge between two that moved is listed by the one with the smaller number.
+    join(moved.size(), kChunk, [&](Collapser& collapser, std::size_t i, std::vector<Edge>& edges) {
+      const std::uint32_t u = moved[i];
+      for (const std::uint32_t w : collapser.neighbours(u)) {
+        std::atomic_ref(touched_[w]).store(1, std::memory_order_relaxed);
+        if (merged_[w] == 0 || w > u) list(collapser, std::min(u, w), std::max(u, w), -1, edges);
       }
     });
-    return any;
+    for (const std::uint32_t v : moved) merged_[v] = 0, touched_[v] = 1;
+    return true;
   }
 
   SlimMesh& mesh_;
@@ -187,9 +269,12 @@ class Passes {
   outofcore::Executor& executor_;
   Ledger& ledger_;
   std::vector<Edge> edges_;
+  float most_listed_ = 0;               // no edge dearer than this is on the list
+  bool has_changed_ = true;             // since the list was made
   std::vector<std::uint32_t> claimed_;  // by vertex: the round that claimed it last
   std::uint32_t stamp_ = 0;
-  std::vector<std::uint8_t> merged_;  // by vertex: its edges are being made anew
+  std::vector<std::uint8_t> merged_;   // by vertex: its edges are being made anew
+  std::vector<std::uint8_t> touched_;  // by vertex: its star has changed since the list was made
   std::vector<Chosen> chosen_;
 };
 

@@ -18,13 +18,9 @@ class Place {
  public:
   Place(const Quadric& q, const Vec4f& u, const Vec4f& v, const Fixed& fixed, const Space& space)
       : q_(q), u_(u), end_(difference(v, u)), fixed_(fixed), space_(space), length_(space.extent(end_)) {
-    const glm::dmat3 square = glm::transpose(space.axes) * space.axes;
     const double pull = kPull * q.weight;
-    for (int i = 0; i < 4; ++i) {
-      for (int j = 0; j < 4; ++j) a_[i][j] = q.at(i, j);
-    }
     for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) pull_[i][j] = pull * square[i][j];
+      for (int j = 0; j < 3; ++j) pull_[i][j] = pull * space.square[i][j];
     }
     pull_[3][3] = pull * space.speed * space.speed;
   }
@@ -34,6 +30,12 @@ class Place {
   std::optional<glm::dvec4> minimum(unsigned mask, glm::dvec4 at) const;
   double costAt(const glm::dvec4& at) const { return q_.value(at); }
   double tieBreak() const { return kTieBreak * q_.weight * length_ * length_; }
+  bool isNear(const glm::dvec4& at) const {
+    const glm::dvec4 from_middle = space_.toLengths(at - 0.5 * end_);
+    return glm::dot(from_middle, from_middle) <= 2.25 * length_ * length_;
+  }
+  // The pull towards the middle: its matrix over space and time.
+  double pullAt(int i, int j) const { return pull_[i][j]; }
   // As a vertex of f32, fixed coordinates exact.
   Vec4f vertexAt(const glm::dvec4& at) const {
     std::array<float, 4> p{static_cast<float>(u_.x + at.x), static_cast<float>(u_.y + at.y),
@@ -53,18 +55,12 @@ class Place {
   const glm::dvec4& end() const { return end_; }
 
  private:
-  bool isNear(const glm::dvec4& at) const {
-    const glm::dvec4 from_middle = at - 0.5 * end_;
-    return space_.extent(from_middle) <= 1.5 * length_;
-  }
-
   const Quadric& q_;
   const Vec4f& u_;
   glm::dvec4 end_;
   const Fixed& fixed_;
   const Space& space_;
   double length_;
-  double a_[4][4] = {};
   double pull_[4][4] = {};
 };
 
@@ -81,11 +77,11 @@ std::optional<glm::dvec4> Place::minimum(unsigned mask, glm::dvec4 at) const {
     double right = -q_.b[row];
     for (int c = 0; c < 4; ++c) {
       right += pull_[row][c] * 0.5 * end_[c];
-      if ((mask >> c & 1u) != 0) right -= (a_[row][c] + pull_[row][c]) * at[c];
+      if ((mask >> c & 1u) != 0) right -= (q_.at(row, c) + pull_[row][c]) * at[c];
     }
     for (int j = 0; j < n; ++j) {
       const int column = free[static_cast<std::size_t>(j)];
-      m[i][j] = a_[row][column] + pull_[row][column];
+      m[i][j] = q_.at(row, column) + pull_[row][column];
     }
     m[i][n] = right;
   }
@@ -106,6 +102,47 @@ std::optional<glm::dvec4> Place::minimum(unsigned mask, glm::dvec4 at) const {
   if (!isNear(at)) return std::nullopt;
   return at;
 }
+
+// The same minimum where no coordinate of space is fixed: the place over time t is p - t q, for every t, so one
+// factorisation serves all times and the free minimum. A 3x3 LDL^T.
+class Track {
+ public:
+  Track(const Quadric& quadric, const Place& place) : place_(place) {
+    const double xx = quadric.xx + place.pullAt(0, 0), xy = quadric.xy + place.pullAt(0, 1),
+                 xz = quadric.xz + place.pullAt(0, 2), yy = quadric.yy + place.pullAt(1, 1),
+                 yz = quadric.yz + place.pullAt(1, 2), zz = quadric.zz + place.pullAt(2, 2);
+    const double lyx = xy / xx, lzx = xz / xx, dy = yy - lyx * xy;
+    const double lzy = (yz - lzx * xy) / dy, dz = zz - lzx * xz - lzy * (yz - lzx * xy);
+    ok_ = xx > 0 && dy > 0 && dz > 0;
+    const auto solve = [&](const glm::dvec3& right) {
+      const double y = right.y - lyx * right.x, z = (right.z - lzx * right.x - lzy * y) / dz;
+      const double solved_y = y / dy - lzy * z;
+      return glm::dvec3(right.x / xx - lyx * solved_y - lzx * z, solved_y, z);
+    };
+    const glm::dvec4 middle = 0.5 * place.end();
+    glm::dvec3 right(0);
+    for (int i = 0; i < 3; ++i)
+      right[i] =
+          -quadric.b[i] + place.pullAt(i, 0) * middle.x + place.pullAt(i, 1) * middle.y + place.pullAt(i, 2) * middle.z;
+    const glm::dvec3 column(quadric.xt, quadric.yt, quadric.zt);
+    p_ = solve(right), q_ = solve(column);
+    slope_ = quadric.tt + place.pullAt(3, 3) - glm::dot(column, q_);
+    right_ = -quadric.b.w + place.pullAt(3, 3) * middle.w - glm::dot(column, p_);
+  }
+
+  std::optional<glm::dvec4> at(double t) const {
+    const glm::dvec4 place(p_ - t * q_, t);
+    const bool usable = ok_ && std::isfinite(place.x + place.y + place.z + place.w) && place_.isNear(place);
+    return usable ? std::optional(place) : std::nullopt;
+  }
+  std::optional<glm::dvec4> minimum() const { return slope_ > 0 ? at(right_ / slope_) : std::nullopt; }
+
+ private:
+  const Place& place_;
+  bool ok_ = false;
+  glm::dvec3 p_{0}, q_{0};
+  double slope_ = 0, right_ = 0;  // of the 1x1 system that is left for time
+};
 
 struct Best {
   glm::dvec4 at{0};
@@ -143,15 +180,20 @@ Placement placeVertex(const Quadric& q, const Vec4f& u, const Vec4f& v, const Fi
     aligned.offer(at, place.costAt(at));
   }
   const bool time_is_fixed = (fixed.mask & kTime) != 0;
+  const bool is_flat = time_is_fixed || u.t == v.t;
+  const auto offer = [&](Best& best, const std::optional<glm::dvec4>& at) {
+    if (at) best.offer(*at, place.costAt(*at));
+  };
   const AlignedTimes times = alignedTimes(u, v, frames);
-  for (std::size_t i = 0; i < (time_is_fixed ? 1 : times.count); ++i) {
-    glm::dvec4 start(0);
-    start.w = times.t[i];
-    if (const auto at = place.minimum(fixed.mask | kTime, place.withFixed(start)))
-      aligned.offer(*at, place.costAt(*at));
-  }
-  if (!time_is_fixed && u.t != v.t) {
-    if (const auto at = place.minimum(fixed.mask, place.withFixed(glm::dvec4(0)))) any.offer(*at, place.costAt(*at));
+  const std::size_t count = time_is_fixed ? 1 : times.count;
+  const auto startAt = [&](double t) { return place.withFixed({0, 0, 0, t}); };
+  if ((fixed.mask & ~kTime) == 0) {
+    const Track track(q, place);
+    for (std::size_t i = 0; i < count; ++i) offer(aligned, track.at(startAt(times.t[i]).w));
+    if (!is_flat) offer(any, track.minimum());
+  } else {
+    for (std::size_t i = 0; i < count; ++i) offer(aligned, place.minimum(fixed.mask | kTime, startAt(times.t[i])));
+    if (!is_flat) offer(any, place.minimum(fixed.mask, startAt(0)));
   }
   const bool is_aligned = !any.found || aligned.cost <= (1 + align) * any.cost + place.tieBreak();
   const Best& best = is_aligned ? aligned : any;

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <glm/matrix.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "libpreprocess/error.h"
+#include "libpreprocess/outofcore/huge_pages.h"
 
 namespace tet4d::qslim4d {
 namespace {
@@ -18,24 +21,9 @@ constexpr double kLeastSlope = 0.05;
 // Of a constraint that holds a free boundary in place.
 constexpr double kBoundaryWeight = 10;
 
-void linkStars(SlimMesh& mesh) {
-  mesh.next.assign(4 * mesh.tets.size(), kNone);
-  mesh.head.assign(mesh.positions.size(), kNone);
-  mesh.tail.assign(mesh.positions.size(), kNone);
-  for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet) {
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      const std::uint32_t v = mesh.tets[tet][i], corner = 4 * tet + i;
-      if (mesh.head[v] == kNone) {
-        mesh.head[v] = corner;
-        ++mesh.live_vertices;
-      } else {
-        mesh.next[mesh.tail[v]] = corner;
-      }
-      mesh.tail[v] = corner;
-    }
-  }
-  mesh.live_tets = mesh.tets.size();
-}
+// Room behind the stars for merged ones, as a share of the living corners: about 30 are written anew for a collapse, so
+// the stars are laid out again each time a few per cent of the vertices are gone.
+constexpr std::uint64_t kRoomShare = 16;
 
 Walls wallsOf(const Vec4f& v, const Bounds4f& domain) {
   const std::array<float, 4> at{v.x, v.y, v.z, v.t};
@@ -83,8 +71,7 @@ using Face = std::array<std::uint32_t, 3>;
 void addBoundaryQuadric(SlimMesh& mesh, const Face& face, std::uint32_t apex, Metric metric) {
   const Space& space = mesh.space;
   const auto toLengths = [&](std::uint32_t v) {
-    const glm::dvec4 offset = difference(mesh.positions[v], mesh.positions[face[0]]);
-    return glm::dvec4(space.axes * spatial(offset), space.speed * offset.w);
+    return space.toLengths(difference(mesh.positions[v], mesh.positions[face[0]]));
   };
   const glm::dvec4 u = toLengths(face[1]), v = toLengths(face[2]);
   const glm::dvec4 normal = cross4(u, v, toLengths(apex));
@@ -106,61 +93,134 @@ void addBoundaryQuadric(SlimMesh& mesh, const Face& face, std::uint32_t apex, Me
               "see tet4d-info --validate for all such places, and mend the mesh");
 }
 
-// Marks boundary vertices, and holds what of the boundary is on no wall.
-void findBoundary(SlimMesh& mesh, Metric metric) {
-  struct Seen {
-    Face face;  // ascending
-    std::uint32_t apex;
-  };
-  std::vector<Seen> seen;
-  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    seen.clear();
-    mesh.forEachTet(v, [&](std::uint32_t tet, std::uint32_t corner) {
-      for (std::uint32_t skip = 0; skip < 4; ++skip) {
-        if (skip == corner) continue;
-        Face face{};
-        std::size_t n = 0;
-        for (std::uint32_t i = 0; i < 4; ++i)
-          if (i != skip) face[n++] = mesh.tets[tet][i];
-        std::sort(face.begin(), face.end());
-        if (face[0] == v) seen.push_back({face, mesh.tets[tet][skip]});
-      }
-    });
-    std::sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.face < b.face; });
-    for (std::size_t i = 0, end = 0; i < seen.size(); i = end) {
-      while (end < seen.size() && seen[end].face == seen[i].face) ++end;
-      if (end - i > 2) refuseFace(seen[i].face);
-      if (end - i == 2) continue;
-      const Face& face = seen[i].face;
-      for (const std::uint32_t w : face) mesh.is_boundary[w] = 1;
-      if ((mesh.walls[face[0]] & mesh.walls[face[1]] & mesh.walls[face[2]]) == 0)
-        addBoundaryQuadric(mesh, face, seen[i].apex, metric);
+constexpr std::uint32_t kChunk = 4096;  // vertices a task
+
+void inChunks(outofcore::Executor* executor, std::size_t count, const std::function<void(std::size_t)>& task) {
+  const std::size_t chunks = (count + kChunk - 1) / kChunk;
+  if (executor != nullptr) return executor->run(chunks, task);
+  for (std::size_t i = 0; i < chunks; ++i) task(i);
+}
+
+struct SeenFace {
+  Face face;  // ascending
+  std::uint32_t apex;
+};
+
+// The faces of tetrahedra at v whose smallest vertex is v, equal ones side by side.
+void facesFrom(const SlimMesh& mesh, std::uint32_t v, std::vector<SeenFace>& seen) {
+  seen.clear();
+  mesh.forEachTet(v, [&](std::uint32_t t, std::uint32_t corner) {
+    const hypermesh::Tet& tet = mesh.tets[t];
+    std::array<std::uint32_t, 3> larger{};
+    std::size_t n = 0;
+    for (std::uint32_t i = 0; i < 4; ++i)
+      if (i != corner) larger[n++] = tet[i];
+    if (larger[0] > larger[1]) std::swap(larger[0], larger[1]);
+    if (larger[1] > larger[2]) std::swap(larger[1], larger[2]);
+    if (larger[0] > larger[1]) std::swap(larger[0], larger[1]);
+    if (v < larger[0]) {
+      seen.push_back({{v, larger[0], larger[1]}, larger[2]});
+      seen.push_back({{v, larger[0], larger[2]}, larger[1]});
     }
+    if (v < larger[1]) seen.push_back({{v, larger[1], larger[2]}, larger[0]});
+  });
+  std::sort(seen.begin(), seen.end(), [](const SeenFace& a, const SeenFace& b) {
+    return std::pair(a.face[1], a.face[2]) < std::pair(b.face[1], b.face[2]);
+  });
+}
+
+// The faces of one tetrahedron, in order of vertices.
+std::vector<SeenFace> boundaryFaces(const SlimMesh& mesh, outofcore::Executor* executor) {
+  struct Found {
+    std::vector<SeenFace> faces;
+    std::optional<Face> refused;
+  };
+  std::vector<Found> found((mesh.positions.size() + kChunk - 1) / kChunk);
+  inChunks(executor, mesh.positions.size(), [&](std::size_t chunk) {
+    std::vector<SeenFace> seen;
+    const std::size_t end = std::min(mesh.positions.size(), (chunk + 1) * kChunk);
+    for (std::size_t v = chunk * kChunk; v < end; ++v) {
+      facesFrom(mesh, static_cast<std::uint32_t>(v), seen);
+      for (std::size_t i = 0, next = 0; i < seen.size(); i = next) {
+        while (next < seen.size() && seen[next].face == seen[i].face) ++next;
+        if (next - i > 2 && !found[chunk].refused) found[chunk].refused = seen[i].face;
+        if (next - i == 1) found[chunk].faces.push_back(seen[i]);
+      }
+    }
+  });
+  std::vector<SeenFace> faces;
+  for (const Found& some : found) {
+    if (some.refused) refuseFace(*some.refused);
+    faces.insert(faces.end(), some.faces.begin(), some.faces.end());
+  }
+  return faces;
+}
+
+// Marks boundary vertices, and holds what of the boundary is on no wall.
+void findBoundary(SlimMesh& mesh, Metric metric, outofcore::Executor* executor) {
+  for (const auto& [face, apex] : boundaryFaces(mesh, executor)) {
+    for (const std::uint32_t w : face) mesh.is_boundary[w] = 1;
+    if ((mesh.walls[face[0]] & mesh.walls[face[1]] & mesh.walls[face[2]]) == 0)
+      addBoundaryQuadric(mesh, face, apex, metric);
   }
 }
 
 }  // namespace
 
 SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> tets, const Bounds4f& domain,
-                      const AffineMap& map, Metric metric) {
+                      const AffineMap& map, Metric metric, outofcore::Executor* executor) {
   SlimMesh mesh;
   mesh.positions = std::move(positions);
   mesh.tets = std::move(tets);
   mesh.space = spaceOf(map);
-  linkStars(mesh);
+  const std::size_t corners = 4 * mesh.tets.size();
+  outofcore::reserveHuge(mesh.corners, corners + corners / kRoomShare);
+  mesh.corners.resize(corners + corners / kRoomShare);
+  outofcore::reserveHuge(mesh.stars, mesh.positions.size());
+  mesh.stars.resize(mesh.positions.size());
+  tidy(mesh);
   mesh.space.speed = speedOf(mesh);
+  outofcore::reserveHuge(mesh.quadrics, mesh.positions.size());
   mesh.quadrics.resize(mesh.positions.size());
   mesh.is_boundary.assign(mesh.positions.size(), 0);
   mesh.walls.reserve(mesh.positions.size());
   for (const Vec4f& v : mesh.positions) mesh.walls.push_back(wallsOf(v, domain));
   for (const hypermesh::Tet& tet : mesh.tets) addTetQuadric(mesh, tet, metric);
-  findBoundary(mesh, metric);
+  findBoundary(mesh, metric, executor);
   return mesh;
 }
 
+void tidy(SlimMesh& mesh) {
+  std::erase_if(mesh.tets, [](const hypermesh::Tet& tet) { return tet[0] == kNone; });
+  std::fill(mesh.stars.begin(), mesh.stars.end(), Star{});
+  for (const hypermesh::Tet& tet : mesh.tets)
+    for (const std::uint32_t v : tet) ++mesh.stars[v].size;
+  mesh.live_tets = mesh.tets.size();
+  mesh.corners_used = 4 * mesh.live_tets;
+  mesh.live_vertices = 0;
+  std::uint32_t begin = 0;
+  for (Star& star : mesh.stars) {
+    mesh.live_vertices += star.size != 0 ? 1 : 0;
+    star.begin = begin;
+    begin += std::exchange(star.size, 0);
+  }
+  for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet) {
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      Star& star = mesh.stars[mesh.tets[tet][i]];
+      mesh.corners[star.begin + star.size++] = 4 * tet + i;
+    }
+  }
+}
+
+void makeRoom(SlimMesh& mesh, std::uint64_t count) {
+  if (mesh.corners_used + count <= mesh.corners.size()) return;
+  tidy(mesh);
+  if (mesh.corners_used + count > mesh.corners.size()) mesh.corners.resize(mesh.corners_used + count);
+}
+
 std::uint64_t slimMeshBytes(std::uint64_t vertices, std::uint64_t tets) {
-  return vertices * (sizeof(Vec4f) + sizeof(Quadric) + 2 * sizeof(std::uint32_t) + 2) +
-         tets * (sizeof(hypermesh::Tet) + 4 * sizeof(std::uint32_t));
+  return vertices * (sizeof(Vec4f) + sizeof(Quadric) + sizeof(Star) + 2) +
+         tets * (sizeof(hypermesh::Tet) + 4 * sizeof(std::uint32_t) * (kRoomShare + 1) / kRoomShare);
 }
 
 }  // namespace tet4d::qslim4d

@@ -1,8 +1,8 @@
-// A tetrahedral mesh that edges are collapsed in: positions, tetrahedra, and the star of every vertex as a linked list
-// through the tetrahedra's corners. Private to qslim4d.
+// A tetrahedral mesh that edges are collapsed in: positions, tetrahedra, and the star of every vertex as a run of
+// corners in one pool. Private to qslim4d.
 //
-// Memory: 32 bytes a tetrahedron, 157 bytes a vertex. Merging two stars is O(1); dead corners leave a list the next
-// time it is tidied.
+// Memory: 34 bytes a tetrahedron, 154 bytes a vertex. A merged star is written anew at the pool's end; dead corners
+// stay in the stars of others until the pool is laid out again.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/hypermesh.h"
+#include "libpreprocess/outofcore/executor.h"
 #include "libpreprocess/qslim4d/quadric.h"
 #include "libpreprocess/qslim4d/space.h"
 
@@ -26,24 +27,42 @@ enum class Metric {
   kPaper,  // sum of N N^T with the raw 4D cross product N
 };
 
+// Where a vertex's corners stand in SlimMesh::corners; none: the vertex is dead or unused.
+struct Star {
+  std::uint32_t begin = 0;
+  std::uint32_t size = 0;
+};
+
 struct SlimMesh {
-  std::vector<Vec4f> positions;      // index space
-  std::vector<hypermesh::Tet> tets;  // a dead one has kNone as its first vertex
-  std::vector<std::uint32_t> next;   // by corner 4 * tet + i: the next corner at the same vertex, or kNone
-  std::vector<std::uint32_t> head;   // by vertex: its first corner; kNone: dead or unused
-  std::vector<std::uint32_t> tail;   // by vertex: its last corner
-  std::vector<Quadric> quadrics;     // by vertex, about the vertex
+  std::vector<Vec4f> positions;        // index space
+  std::vector<hypermesh::Tet> tets;    // a dead one has kNone as its first vertex
+  std::vector<std::uint32_t> corners;  // 4 * tet + i: vertex i of tet
+  std::uint64_t corners_used = 0;      // of `corners`
+  std::vector<Star> stars;             // by vertex
+  std::vector<Quadric> quadrics;       // by vertex, about the vertex
   std::vector<Walls> walls;
   std::vector<std::uint8_t> is_boundary;  // the vertex lies in a triangle of one tetrahedron
   std::uint64_t live_tets = 0, live_vertices = 0;
   Space space;
 
   bool isLive(std::uint32_t tet) const { return tets[tet][0] != kNone; }
+  // A vertex whose last tetrahedron died with others' edges still counts as used until the stars are laid out again.
+  bool isUsed(std::uint32_t v) const { return stars[v].size != 0; }
+
+  // Brings what a walk over v's star reads into the cache.
+  void prefetchStar(std::uint32_t v) const {
+    for (const std::uint32_t c : starOf(v)) __builtin_prefetch(&tets[c / 4]);
+  }
+
+  // The corners at v, dead ones among them.
+  std::span<const std::uint32_t> starOf(std::uint32_t v) const {
+    return {corners.data() + stars[v].begin, stars[v].size};
+  }
 
   // Calls visit(tet, corner) for the living tetrahedra at v.
   template <class Visit>
   void forEachTet(std::uint32_t v, const Visit& visit) const {
-    for (std::uint32_t c = head[v]; c != kNone; c = next[c]) {
+    for (const std::uint32_t c : starOf(v)) {
       if (isLive(c / 4)) visit(c / 4, c % 4);
     }
   }
@@ -53,7 +72,14 @@ struct SlimMesh {
 // Error{kBadInput} that names the triangle if one lies in more than two tetrahedra (the link condition has no meaning
 // there). O(tets log star).
 SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> tets, const Bounds4f& domain,
-                      const AffineMap& map, Metric metric);
+                      const AffineMap& map, Metric metric, outofcore::Executor* executor = nullptr);
+
+// Drops dead tetrahedra, which gives those that are left new numbers, and lays all stars out again, in order of
+// vertices and tetrahedra. O(tets).
+void tidy(SlimMesh& mesh);
+
+// Makes room for `count` more corners, by tidy() if there is none.
+void makeRoom(SlimMesh& mesh, std::uint64_t count);
 
 // Bytes of a mesh of so many vertices and tetrahedra, with what building it takes.
 std::uint64_t slimMeshBytes(std::uint64_t vertices, std::uint64_t tets);

@@ -13,6 +13,7 @@ Space spaceOf(const AffineMap& map) {
     const auto& a = map.axes[static_cast<std::size_t>(axis)];
     space.axes[axis] = glm::dvec3(a[0], a[1], a[2]) / cell;
   }
+  space.square = glm::transpose(space.axes) * space.axes;
   // Cross products of mapped vectors are the cofactor matrix times the cross product.
   space.normals = glm::determinant(space.axes) * glm::transpose(glm::inverse(space.axes));
   return space;

@@ -31,6 +31,7 @@ inline glm::dvec4 cross4(const glm::dvec4& u, const glm::dvec4& v, const glm::dv
 
 struct Space {
   glm::dmat3 axes{1};     // index offsets to lengths, in units of the mean cell
+  glm::dmat3 square{1};   // axes' axes: d . square d is a squared length
   glm::dmat3 normals{1};  // spatial parts of index-space cross products to those in the same units
   // Length per frame: how far a typical edge reaches in space over how far in time. Only a yardstick, for the
   // regularisation and for tetrahedra that stand almost still in space; covariant under a rescaling of time.
@@ -38,11 +39,9 @@ struct Space {
   double cell = 1;  // the mean cell, world units
 
   double length(const glm::dvec4& offset) const { return glm::length(axes * spatial(offset)); }
-  // Length in space-time, time measured by `speed`.
-  double extent(const glm::dvec4& offset) const {
-    const double time = speed * offset.w;
-    return std::sqrt(glm::dot(axes * spatial(offset), axes * spatial(offset)) + time * time);
-  }
+  // Offset in lengths, time measured by `speed`.
+  glm::dvec4 toLengths(const glm::dvec4& offset) const { return {axes * spatial(offset), speed * offset.w}; }
+  double extent(const glm::dvec4& offset) const { return glm::length(toLengths(offset)); }
   glm::dvec3 spatialNormal(const glm::dvec4& cross) const { return normals * spatial(cross); }
 };
 

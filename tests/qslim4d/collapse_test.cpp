@@ -100,7 +100,7 @@ TEST(Collapse, LinkConditionIsWhatKeepsAManifold) {
   std::uint64_t allowed = 0, would_tear = 0;
   for (int i = 0; i < 4000; ++i) {
     const auto u = static_cast<std::uint32_t>(random() % mesh.positions.size());
-    if (mesh.head[u] == kNone) continue;
+    if (!mesh.isUsed(u)) continue;
     Collapser collapser(mesh, {10, true, 1000});
     const auto around = collapser.neighbours(u);
     const std::uint32_t w = around[random() % around.size()], a = std::min(u, w), b = std::max(u, w);
@@ -131,7 +131,7 @@ TEST(Collapse, WallsAreKeptAndStarsAreLists) {
   std::uint64_t live = mesh.live_tets;
   for (int i = 0; i < 2000; ++i) {
     const auto u = static_cast<std::uint32_t>(random() % mesh.positions.size());
-    if (mesh.head[u] == kNone) continue;
+    if (!mesh.isUsed(u)) continue;
     const auto around = collapser.neighbours(u);
     const std::uint32_t w = around[random() % around.size()], a = std::min(u, w), b = std::max(u, w);
     Placement placement;

@@ -146,14 +146,14 @@ TEST(Simplify, WallsAndBothEndsOfTimeStayWhereTheyAre) {
   SlimMesh slim = slimOf(mesh);
   const auto count = [&](const SlimMesh& m, Walls wall) {
     std::uint64_t n = 0;
-    for (std::uint32_t v = 0; v < m.positions.size(); ++v) n += m.head[v] != kNone && (m.walls[v] & wall) != 0 ? 1 : 0;
+    for (std::uint32_t v = 0; v < m.positions.size(); ++v) n += m.isUsed(v) && (m.walls[v] & wall) != 0 ? 1 : 0;
     return n;
   };
   const std::uint64_t on_x = count(slim, 1), at_start = count(slim, 1u << 6);
   ASSERT_GT(on_x, 100u);
   run(slim, toTets(Order::kPasses, mesh.tets.size() / 10));
   for (std::uint32_t v = 0; v < slim.positions.size(); ++v) {
-    if (slim.head[v] == kNone) continue;
+    if (!slim.isUsed(v)) continue;
     const Vec4f& p = slim.positions[v];
     EXPECT_EQ((slim.walls[v] & 1) != 0, p.x == 0) << v;
     EXPECT_TRUE((slim.walls[v] & 1u << 6) == 0 || p.t == 0);
