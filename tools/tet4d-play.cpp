@@ -335,12 +335,12 @@ std::vector<host::Legend> legendsOf(const Options& options, std::span<const scen
 
 int playFiles(cli::Session& session, const Options& options) {
   if (!options.offscreen) return playInWindow(session, options);
+  if (options.panels) return drawPanels(session, options);
   if (options.inputs.empty())
     throw Error(FaultCode::kUsage, "", "FILE", "no file is named, and there is no window to open one in",
                 "give tet4d-play FILE.t4d --offscreen -o frames/%05d.png");
-  if (options.ui_scale && !options.panels)
+  if (options.ui_scale)
     throw Error(FaultCode::kUsage, "", "--ui-scale", "scales panels, and there are none", "give --panels too");
-  if (options.panels) return drawPanels(session, options);
   if (options.renderer == "tets") return playTets(session, options);
   const cli::CommonOptions& common = session.options();
   const bool draws = !common.output.empty() || !options.contact_sheet.empty();

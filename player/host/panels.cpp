@@ -123,7 +123,7 @@ void layOutHelp(const PanelLayout& layout) {
         ImGui::TextColored(accent, "%s", group);
       }
       ImGui::TextUnformatted(binding.label);
-      ImGui::SameLine(60);
+      ImGui::SameLine(54);
       ImGui::TextUnformatted(binding.meaning);
     }
     ImGui::Dummy({1, 4});

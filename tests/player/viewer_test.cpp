@@ -158,6 +158,7 @@ TEST(Viewer, TheWheelGoesNearerAboutTheCursor) {
 TEST(Viewer, QuestionMarkShowsTheKeys) {
   test::ViewerStage stage(small());
   stage.open(sphere("viewer_help.t4d"));
+  stage.key(Key::kEscape);  // the hint for newcomers goes
   const render::Image before = stage.screenshot();
   stage.type(U'?');
   EXPECT_TRUE(stage->state().help);

@@ -49,7 +49,7 @@ CASES = [
     {"name": "a column that is not there is refused before it opens", "run": ["tet4d-play", SPHERE, "--color", "speed"], "exit": 2,
      "stderr": ["has no column"]},
     {"name": "it opens with the colours asked for, and their legend", "timeout": 240,
-     "shell": XVFB + f"{PLAY} {COLUMNS}{SIZE}--color velocity:0 --map magma --quit-after 8 --screenshot window.png;"
+     "shell": XVFB + f"{PLAY} {COLUMNS}{SIZE}--color velocity:0 --map magma --quit-after 30 --screenshot window.png;"
                      f" tet4d-play {COLUMNS}{SIZE}--color velocity:0 --map magma --offscreen --panels -o offscreen.png", "check": check_window},
     {"name": "on a dense display panels are as large as --ui-scale 2 makes them", "timeout": 240,
      "shell": "xvfb-run -a -s '-screen 0 1600x1000x24 -dpi 192' " + f"{PLAY} {SPHERE}{SIZE}--quit-after 8 --screenshot window.png;"
@@ -60,8 +60,7 @@ CASES = [
     {"name": "a scale out of reason", "run": ["tet4d-play", SPHERE, "--ui-scale", "20"], "exit": 2, "stderr": ["--ui-scale", "0.5 and 8"]},
     {"name": "an empty window says what to do", "timeout": 240,
      "shell": XVFB + f"{PLAY} --size 700x400 --quit-after 5 --screenshot window.png;"
-                     " tet4d-play {files}/sphere.t4d --size 700x400 --at 1.5f --offscreen --panels -o offscreen.png",
-     "check": lambda r: pixels(r.directory / "window.png")[0] != pixels(r.directory / "offscreen.png")[0]},
+                     " tet4d-play --size 700x400 --offscreen --panels -o offscreen.png", "check": check_window},
     {"name": "one pixel", "timeout": 240, "shell": XVFB + f"{PLAY} {SPHERE} --size 1x1 --type ' ' --quit-after 4"},
     {"name": "--panels without --offscreen", "run": ["tet4d-play", SPHERE, "--panels", "-o", "a.png"], "exit": 2,
      "stderr": ["--panels", "--offscreen"], "absent": ["a.png"]},
