@@ -109,7 +109,9 @@ struct Ink {
 
 void drawBar(render::Image& image, const Legend& legend, double left, double top, double line, double bar_lines,
              const Ink& ink) {
-  const double height = bar_lines * line, width = kBarWidth * line;
+  // On whole pixels: a row that covers two by halves would let what is behind it through.
+  left = std::round(left), top = std::round(top);
+  const double height = std::round(bar_lines * line), width = std::round(kBarWidth * line);
   fillRectangle(image, left - 1, top - 1, left + width + 1, top + height + 1, ink.line, 1);
   const auto rows = static_cast<std::size_t>(std::lround(height));
   for (std::size_t row = 0; row < rows; ++row) {
@@ -137,9 +139,10 @@ void drawLegend(render::Image& image, const Legend& legend, double left, double 
   if (!legend.bar.empty()) return drawBar(image, legend, x, y + 0.2 * line, line, bar_lines, ink);
   for (const Legend::Entry& entry : legend.entries) {
     const bool has_color = entry.label != "...";
+    const double left_px = std::round(x), top_px = std::round(y), side = std::round(kSwatch * line);
     if (has_color) {
-      fillRectangle(image, x - 1, y - 1, x + kSwatch * line + 1, y + kSwatch * line + 1, ink.line, 1);
-      fillRectangle(image, x, y, x + kSwatch * line, y + kSwatch * line, entry.color, 1);
+      fillRectangle(image, left_px - 1, top_px - 1, left_px + side + 1, top_px + side + 1, ink.line, 1);
+      fillRectangle(image, left_px, top_px, left_px + side, top_px + side, entry.color, 1);
     }
     drawText(image, x + (kSwatch + 0.5) * line, y + 0.8 * line, line, entry.label, ink.letters);
     y += kLineStep * line;

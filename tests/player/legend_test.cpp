@@ -79,14 +79,14 @@ TEST(TicksStiff, OfAnyRangeStandInOrderWhereTheyBelong) {
 }
 
 TEST(StrokeFont, EveryLetterIsDrawnAndNoTwoAreAlike) {
-  std::map<std::vector<std::uint8_t>, char> seen;
+  std::map<std::string, char> seen;
   for (char c = '!'; c <= '~'; ++c) {
     render::Image image = plain(60, 80, 255);
     drawText(image, 12, 55, 60, std::string(1, c), {0, 0, 0});
     const auto inked = std::count(image.rgba.begin(), image.rgba.end(), 0);
     EXPECT_GT(inked, 10) << c;
     // ' and | are strokes of their own lengths, l and I alike in many alphabets.
-    const auto [at, is_new] = seen.emplace(image.rgba, c);
+    const auto [at, is_new] = seen.emplace(std::string(image.rgba.begin(), image.rgba.end()), c);
     EXPECT_TRUE(is_new || (c == 'l' && at->second == 'I')) << c << " looks like " << at->second;
     EXPECT_GE(textWidth(std::string(1, c), 60), 0);
   }
