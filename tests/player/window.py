@@ -2,12 +2,15 @@
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).parent))
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
 from png_pixels import pixels  # noqa: E402
 
 # Programs' names are functions of the shell in a case, and xvfb-run and env start files: PLAY is the file's name.
 PLAY = """$(declare -f tet4d-play | grep -o "/[^']*tet4d-play")"""
 XVFB = "xvfb-run -a -s '-screen 0 1400x900x24' "
+# A display of 192 dots an inch; what follows stands within double quotes.
+DENSE = f"xvfb-run -a -s '-screen 0 1600x1000x24 -noreset' sh -c \"/usr/bin/python3 {HERE}/set_dpi.py 192 && exec "
 
 
 def alike(result, one, two, most_rms):
@@ -52,10 +55,10 @@ CASES = [
      "shell": XVFB + f"{PLAY} {COLUMNS}{SIZE}--color velocity:0 --map magma --quit-after 30 --screenshot window.png;"
                      f" tet4d-play {COLUMNS}{SIZE}--color velocity:0 --map magma --offscreen --panels -o offscreen.png", "check": check_window},
     {"name": "on a dense display panels are as large as --ui-scale 2 makes them", "timeout": 240,
-     "shell": "xvfb-run -a -s '-screen 0 1600x1000x24 -dpi 192' " + f"{PLAY} {SPHERE}{SIZE}--quit-after 8 --screenshot window.png;"
+     "shell": DENSE + f"{PLAY} {SPHERE}{SIZE}--quit-after 8 --screenshot window.png\";"
               f" tet4d-play {SPHERE} --size 1400x800 --at 1.5f --ui-scale 2 --offscreen --panels -o offscreen.png", "check": check_window},
     {"name": "unless a scale is given", "timeout": 240,
-     "shell": "xvfb-run -a -s '-screen 0 1600x1000x24 -dpi 192' " + f"{PLAY} {SPHERE}{SIZE}--ui-scale 1 --quit-after 8 --screenshot window.png;"
+     "shell": DENSE + f"{PLAY} {SPHERE}{SIZE}--ui-scale 1 --quit-after 8 --screenshot window.png\";"
               f" tet4d-play {SPHERE}{SIZE}--ui-scale 1 --offscreen --panels -o offscreen.png", "check": check_window},
     {"name": "a scale out of reason", "run": ["tet4d-play", SPHERE, "--ui-scale", "20"], "exit": 2, "stderr": ["--ui-scale", "0.5 and 8"]},
     {"name": "an empty window says what to do", "timeout": 240,
