@@ -34,7 +34,7 @@ constexpr std::uint64_t kMostIoThreads = 64;
 struct Options {
   std::vector<std::string> inputs;
   bool offscreen = false, flat = false, panels = false;
-  play::Coloring coloring;
+  play::ColoringOptions coloring;
   std::array<std::uint32_t, 2> size{1280, 720};
   std::string at, times, camera, write_camera, contact_sheet;
   std::string renderer = host::hasOffscreenGl() ? "gl" : "cpu";
@@ -42,7 +42,7 @@ struct Options {
   std::string arrival = "wait", on_damage = "stop";
   std::uint64_t samples = 4, columns = 4, tiles = 0, gpu_memory = 0, io_threads = 1;
   double orbit_degrees = 0, fps = 25;
-  std::optional<double> budget_ms;
+  std::optional<double> budget_ms, ui_scale;
   std::string typed, screenshot;  // for tests of the window
   std::uint64_t quit_after = 0;
 };
@@ -226,8 +226,10 @@ int playTets(cli::Session& session, const Options& options) {
   if (!options.camera.empty()) session.dependsOn(options.camera);
   if (!options.at.empty() && !options.times.empty())
     throw Error(FaultCode::kUsage, "", "", "--at and --times are both given", "give one of the two");
-  if (!options.coloring.color.empty() || !options.coloring.range.empty() || options.coloring.shading == "file")
-    throw Error(FaultCode::kUsage, "", "--renderer tets", "knows neither columns nor normals of the file",
+  const play::ColoringOptions& coloring = options.coloring;
+  if (!coloring.color.empty() || !coloring.range.empty() || coloring.shading == "file" || coloring.shading == "none" ||
+      coloring.by != "auto" || coloring.legend)
+    throw Error(FaultCode::kUsage, "", "--renderer tets", "knows neither columns, parts nor normals of the file",
                 "draw the .t4d of the hypermesh: dyntri-build");
   const std::string all = "0f:" + std::to_string(file.times().size() - 1) + "f:1f";
   const std::string& asked = !options.at.empty() ? options.at : options.times;
@@ -251,15 +253,19 @@ host::PlayerRequest requestOf(cli::Session& session, const Options& options) {
   request.smooth = !options.flat && options.coloring.shading != "flat";
   const std::uint64_t half = session.memory().available() / 2;
   const std::uint64_t usual = session.options().memory_bytes != 0 ? half : host::usualPageBytes();
-  request.budget_bytes = std::min(half, usual) / std::max<std::size_t>(1, options.inputs.size());
+  request.budget_bytes = std::min(half, usual);
+  request.gpu_bytes = std::min(half, options.gpu_memory != 0 ? options.gpu_memory : usual);
+  request.ui_scale = options.ui_scale;
   request.budget_ms = options.budget_ms;
   request.typed = options.typed;
   request.quit_after = options.quit_after;
   request.stop = outofcore::interruptRequested;
   request.screenshot = options.screenshot;
-  if (options.at.empty() && options.camera.empty()) return request;
+  if (options.inputs.empty()) return request;
   std::vector<dyntri::File> opened;
   for (const std::string& input : options.inputs) opened.push_back(unwrap(host::openDynamicTriangles(input)));
+  for (std::size_t i = 0; i < opened.size(); ++i)
+    request.colorings.push_back(play::coloringOf(options.coloring, options.inputs[i], opened[i]));
   std::vector<scene::SceneFile> files;
   for (const dyntri::File& file : opened) files.push_back({&file, std::nullopt, true});
   if (!options.at.empty()) request.time = timesOf(options, files).front().time;
@@ -273,9 +279,6 @@ void refuseFilmOptions(const Options& options, const cli::CommonOptions& common)
                                        {"--times", !options.times.empty()},
                                        {"--contact-sheet", !options.contact_sheet.empty()},
                                        {"--write-camera", !options.write_camera.empty()},
-                                       {"--color", !options.coloring.color.empty()},
-                                       {"--range", !options.coloring.range.empty()},
-                                       {"--shading file", options.coloring.shading == "file"},
                                        {"--orbit", options.orbit_degrees != 0},
                                        {"--renderer tets", options.renderer == "tets"}}) {
     if (!is_given) continue;
@@ -286,10 +289,17 @@ void refuseFilmOptions(const Options& options, const cli::CommonOptions& common)
   }
 }
 
+// What the window draws its panels with, and what it opens.
+void checkWindow(const Options& options) {
+  checkBudget(options);
+  if (options.ui_scale && !(*options.ui_scale >= 0.5 && *options.ui_scale <= 8))
+    throw Error(FaultCode::kUsage, "", "--ui-scale", "expected a number between 0.5 and 8", "give --ui-scale 2");
+}
+
 int playInWindow(cli::Session& session, const Options& options) {
   if (options.panels)
     throw Error(FaultCode::kUsage, "", "--panels", "draws a picture into a file", "give --offscreen and -o too");
-  checkBudget(options);
+  checkWindow(options);
   refuseFilmOptions(options, session.options());
   unwrap(host::runWindow(requestOf(session, options)));
   session.progress().step(0);  // throws after an interrupt
@@ -299,7 +309,7 @@ int playInWindow(cli::Session& session, const Options& options) {
 int drawPanels(cli::Session& session, const Options& options) {
   const std::string& output = session.options().output;
   refuseFilmOptions(options, session.options());
-  checkBudget(options);
+  checkWindow(options);
   if (output.empty() || output == "-" || !endsIn(output, ".png") || host::hasNumber(output)) {
     throw Error(FaultCode::kUsage, output, "--panels", "draws one picture, as PNG",
                 "give -o player.png, and --at for its time");
@@ -310,9 +320,27 @@ int drawPanels(cli::Session& session, const Options& options) {
   return 0;
 }
 
+// One a file, with the file's name where there are several.
+std::vector<host::Legend> legendsOf(const Options& options, std::span<const scene::SceneFile> files) {
+  std::vector<host::Legend> legends;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const scene::Coloring coloring = play::coloringOf(options.coloring, options.inputs[i], *files[i].file);
+    const std::string note = files.size() > 1 ? std::filesystem::path(options.inputs[i]).filename().string() : "";
+    for (host::Legend& legend :
+         host::legendOf(*files[i].file, coloring, files[i].column ? &*files[i].column : nullptr, note))
+      legends.push_back(std::move(legend));
+  }
+  return legends;
+}
+
 int playFiles(cli::Session& session, const Options& options) {
   if (!options.offscreen) return playInWindow(session, options);
   if (options.panels) return drawPanels(session, options);
+  if (options.inputs.empty())
+    throw Error(FaultCode::kUsage, "", "FILE", "no file is named, and there is no window to open one in",
+                "give tet4d-play FILE.t4d --offscreen -o frames/%05d.png");
+  if (options.ui_scale)
+    throw Error(FaultCode::kUsage, "", "--ui-scale", "scales panels, and there are none", "give --panels too");
   if (options.renderer == "tets") return playTets(session, options);
   const cli::CommonOptions& common = session.options();
   const bool draws = !common.output.empty() || !options.contact_sheet.empty();
@@ -335,6 +363,7 @@ int playFiles(cli::Session& session, const Options& options) {
   for (const dyntri::File& file : opened) film.files.push_back({&file, std::nullopt, true});
   for (std::size_t i = 0; i < film.files.size(); ++i)
     play::applyColoring(session, options.coloring, options.inputs[i], film.files[i]);
+  if (options.coloring.legend) film.legends = legendsOf(options, film.files);
   film.times = timesOf(options, film.files);
   checkNames(options, common, film.times.size());
   film.shot = shotOf(options, film.files);
@@ -360,12 +389,14 @@ int main(int argc, char** argv) {
   cli::Command command("tet4d-play", "Plays dynamic triangles: pictures or a film at any time, between frames too.");
   command.example("tet4d-play dam.t4d", "a window; ? lists the keys")
       .example("tet4d-play dam.t4d --offscreen -o frames/%05d.png", "one picture a frame of the file")
+      .example("tet4d-play dam.t4d --offscreen --at 0.35 --color velocity --map magma --legend -o dam.png",
+               "coloured by a column of the file, with what the colours mean")
       .example("tet4d-play dam.t4d --offscreen --times 0f:20f:0.1f --format y4m -o - | ffmpeg -i - dam.mp4",
                "ten times slower, as a film")
       .example("tet4d-play dam.t4d --offscreen --at 0.35 --write-camera camera.json -o dam.png",
                "one picture, and its camera to change")
       .positional("FILE", "dynamic triangles (.t4d); several share one scene, one camera and the world's time",
-                  &o.inputs)
+                  &o.inputs, true)
       .heading("Pictures")
       .flag("--offscreen", "draw into files, without a display; without it a window opens", &o.offscreen)
       .option("--size", "WxH", "of a picture or the window, pixels", cli::Extent{&o.size})
@@ -379,19 +410,31 @@ int main(int argc, char** argv) {
       .option("--samples", "N", "samples a pixel: 1, 4, 9 or 16", &o.samples)
       .flag("--flat", "one normal a triangle instead of smooth ones", &o.flat)
       .flag("--panels", "with the window's panels over the picture", &o.panels)
+      .option("--ui-scale", "S",
+              "size of panels and their letters, 1: 13 pixels; default: what the display says of itself", &o.ui_scale)
       .option("--type", "KEYS", "keys pressed in the window once everything is open", &o.typed, cli::kNotInHelp)
       .option("--quit-after", "N", "close the window after N pictures", &o.quit_after, cli::kNotInHelp)
       .option("--screenshot", "FILE", "what the window shows at the end", &o.screenshot,
               cli::kNotInHelp | cli::kIsOutput)
-      .option("--shading", "WHICH", "normals: summed up in the slice, the file's column \"normal\", or one a triangle",
-              cli::Choice{&o.coloring.shading, {"slice", "file", "flat"}})
+      .heading("Colours")
+      .option(
+          "--shading", "WHICH",
+          "normals: summed up in the slice, the file's column \"normal\", or one a triangle; none: colours as they are",
+          cli::Choice{&o.coloring.shading, {"slice", "file", "flat", "none"}})
       .option("--color", "NAME", "colour by a column; NAME:0, NAME:1 … a component, NAME:magnitude its length",
               &o.coloring.color)
+      .option("--color-by", "WHAT", "part: each part of a file a colour of its own; auto: as --color says",
+              cli::Choice{&o.coloring.by, {"auto", "part"}})
       .option("--range", "LO:HI",
               "values at the ends of the map; default: all but the lowest and highest 1 % in the file, read once",
               &o.coloring.range)
       .option("--map", "NAME", "colours from low to high",
               cli::Choice{&o.coloring.map, {"viridis", "cividis", "inferno", "magma", "cool-warm", "grey"}})
+      .flag("--reverse-map", "the map from its other end", &o.coloring.reverse_map)
+      .option("--scale", "WHICH", "of the map: log for equal factors, values at or below 0 take its lowest colour",
+              cli::Choice{&o.coloring.scale, {"linear", "log"}})
+      .flag("--legend", "draw into the picture what the colours mean; the window does unless told otherwise (k)",
+            &o.coloring.legend)
       .heading("Camera")
       .option("--camera", "FILE", "camera, lights and material (JSON); default: fitted to the data", &o.camera)
       .option("--orbit", "DEG", "turn of the camera about the vertical over the whole film", &o.orbit_degrees)

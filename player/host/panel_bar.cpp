@@ -128,16 +128,31 @@ void playButtons(Viewer& viewer) {
   button("##last", Icon::kLast, "end of the range (End)", Action::kLast);
 }
 
-void speedAndLoop(Viewer& viewer) {
+// The range that is played and filmed, by mouse.
+void rangeButtons(Viewer& viewer) {
+  const auto button = [&](const char* name, const char* tip, Action action) {
+    if (ImGui::Button(name)) viewer.act(action);
+    markPlace(viewer.state(), name);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+    ImGui::SameLine(0, 4);
+  };
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("range");
+  ImGui::SameLine();
+  button("from here", "what is played and filmed begins at the present time (i)", Action::kRangeBegin);
+  button("to here", "what is played and filmed ends at the present time (o)", Action::kRangeEnd);
+  button("all", "the range is everything (a)", Action::kRangeAll);
+}
+
+void speedAndLoop(Viewer& viewer, bool is_tight) {
   Timeline& timeline = viewer.state().timeline;
-  ImGui::SameLine(0, 16);
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("speed");
   ImGui::SameLine();
   auto octaves = static_cast<float>(std::log2(timeline.speed()));
   std::array<char, 24> label{};
   std::snprintf(label.data(), label.size(), "x %-5.3g", timeline.speed());
-  ImGui::SetNextItemWidth(110);
+  ImGui::SetNextItemWidth(is_tight ? 66.0f : 90.0f);
   if (ImGui::SliderFloat("##speed", &octaves, -6, 6, ""))
     timeline.setSpeed(std::exp2(std::round(double{octaves} * 2) / 2));
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("x 1: twelve frames a second ([ slower, ] faster)");
@@ -147,15 +162,20 @@ void speedAndLoop(Viewer& viewer) {
   ImGui::SameLine();
   bool backward = timeline.backward();
   if (ImGui::Checkbox("backward", &backward)) timeline.setBackward(backward);
-  ImGui::SameLine(0, 16);
-  ImGui::SetNextItemWidth(130);
-  if (ImGui::BeginCombo("##loop", loopName(timeline.loop()))) {
+  markPlace(viewer.state(), "backward");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("play the other way (r)");
+  ImGui::SameLine(0, 12);
+  ImGui::SetNextItemWidth(102);
+  const bool open = ImGui::BeginCombo("##loop", loopName(timeline.loop()));
+  markPlace(viewer.state(), "loop");
+  if (open) {
     for (const Loop loop : {Loop::kLoop, Loop::kPingPong, Loop::kOnce}) {
       if (ImGui::Selectable(loopName(loop), loop == timeline.loop())) timeline.setLoop(loop);
+      markPlace(viewer.state(), loopName(loop));
     }
     ImGui::EndCombo();
-  }
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("what happens at the end of the range (l)");
+  } else if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("what happens at the end of the range (l)");
 }
 
 }  // namespace
@@ -165,10 +185,18 @@ void layOutBar(Viewer& viewer, const PanelLayout& layout) {
   timeLine(viewer, ImGui::GetContentRegionAvail().x);
   ImGui::Dummy({1, 1});
   playButtons(viewer);
-  if (layout.width >= 700) speedAndLoop(viewer);
+  const auto more = [&] {
+    speedAndLoop(viewer, layout.bar_is_tall);
+    ImGui::SameLine(0, layout.bar_is_tall ? 8.0f : 16.0f);
+    rangeButtons(viewer);
+  };
+  if (!layout.bar_is_tall) {
+    ImGui::SameLine(0, 16);
+    more();
+  }
   std::array<char, 96> where{};
   if (timeline.table().empty()) {
-    std::snprintf(where.data(), where.size(), "drop files here");
+    std::snprintf(where.data(), where.size(), "nothing is open");
   } else {
     std::snprintf(where.data(), where.size(), "frame %.2f of %zu   time %.6g", timeline.frame(),
                   timeline.table().size() - 1, timeline.time());
@@ -177,6 +205,7 @@ void layOutBar(Viewer& viewer, const PanelLayout& layout) {
   ImGui::SameLine(std::max(180.0f, ImGui::GetWindowContentRegionMax().x - width));
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(where.data());
+  if (layout.bar_is_tall) more();
 }
 
 }  // namespace tet4d::host

@@ -14,45 +14,6 @@ namespace {
 
 constexpr int kNumberWidth = 150;
 
-struct Lighting {
-  const char* name;
-  std::array<std::array<double, 6>, 3> lights;  // direction, colour
-  double ambient;
-};
-
-// The first is defaultShot()'s.
-constexpr std::array<Lighting, 4> kLightings{{
-    {"studio",
-     {{{0.75, 0.55, -1.0, 0.80, 0.77, 0.71},
-       {-1.0, 0.35, -0.25, 0.16, 0.19, 0.24},
-       {-0.1, -1.0, -0.45, 0.20, 0.21, 0.23}}},
-     0.20},
-    {"soft",
-     {{{0.3, 0.4, -1.0, 0.42, 0.42, 0.42}, {-1.0, 0.2, -0.4, 0.26, 0.26, 0.26}, {0.6, -0.8, -0.3, 0.22, 0.22, 0.22}}},
-     0.32},
-    {"low sun",
-     {{{1.0, 0.35, -0.22, 1.05, 0.83, 0.58},
-       {-0.4, 0.2, -1.0, 0.10, 0.14, 0.24},
-       {-1.0, -0.6, -0.2, 0.05, 0.06, 0.09}}},
-     0.10},
-    {"overhead",
-     {{{0.05, 0.08, -1.0, 0.95, 0.95, 0.93}, {-0.6, 1.0, -0.2, 0.14, 0.14, 0.15}, {0.6, -1.0, -0.2, 0.10, 0.10, 0.11}}},
-     0.14},
-}};
-
-void useLighting(const Lighting& lighting, scene::Shot& shot) {
-  shot.lights.clear();
-  for (const auto& l : lighting.lights) shot.lights.push_back({{l[0], l[1], l[2]}, {l[3], l[4], l[5]}});
-  shot.ambient = glm::dvec3(lighting.ambient);
-}
-
-bool editColor(const char* label, glm::dvec3& color) {
-  std::array<float, 3> rgb{static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)};
-  if (!ImGui::ColorEdit3(label, rgb.data(), ImGuiColorEditFlags_NoInputs)) return false;
-  color = {double{rgb[0]}, double{rgb[1]}, double{rgb[2]}};
-  return true;
-}
-
 std::string shortName(const std::string& path) {
   std::string name = std::filesystem::path(path).filename().string();
   if (name.size() > 24) name = name.substr(0, 11) + "..." + name.substr(name.size() - 10);
@@ -89,63 +50,16 @@ void filesPart(Viewer& viewer) {
   if (removed < files.size()) viewer.removeFile(removed);
 }
 
-void materialPart(Viewer& viewer) {
-  ViewerState& state = viewer.state();
-  const auto& files = viewer.files().all();
-  if (state.selected >= files.size() || files[state.selected] == nullptr) {
-    const auto at = std::find_if(files.begin(), files.end(), [](const auto& file) { return file != nullptr; });
-    if (at == files.end()) return;
-    state.selected = static_cast<std::size_t>(at - files.begin());
-  }
-  scene::Material& material = files[state.selected]->material;
-  bool changed = editColor("outside", material.color);
-  markPlace(state, "outside");
-  ImGui::SameLine(130);
-  changed |= editColor("inside", material.back_color);
-  auto specular = static_cast<float>(material.specular), shininess = static_cast<float>(material.shininess);
-  ImGui::SetNextItemWidth(kNumberWidth);
-  if (ImGui::SliderFloat("highlight", &specular, 0, 1, "%.2f")) changed = true, material.specular = double{specular};
-  ImGui::SetNextItemWidth(kNumberWidth);
-  if (ImGui::SliderFloat("sharpness", &shininess, 1, 200, "%.0f", ImGuiSliderFlags_Logarithmic)) {
-    changed = true;
-    material.shininess = std::max(1.0, double{shininess});
-  }
-  if (changed) viewer.changed();
-}
-
-void surroundingsPart(Viewer& viewer) {
-  scene::Shot& shot = viewer.state().shot;
-  bool changed = editColor("sky", shot.background.top);
-  ImGui::SameLine(130);
-  changed |= editColor("ground", shot.background.bottom);
-  bool has_room = shot.background.room.has_value();
-  if (ImGui::Checkbox("walls", &has_room)) viewer.act(Action::kRoom);
-  markPlace(viewer.state(), "walls");
-  if (shot.background.room) {
-    ImGui::SameLine(130);
-    changed |= editColor("their colour", *shot.background.room);
-  }
-  ImGui::SetNextItemWidth(kNumberWidth);
-  const auto* present = std::find_if(kLightings.begin(), kLightings.end(), [&](const Lighting& lighting) {
-    scene::Shot other = shot;
-    useLighting(lighting, other);
-    return shot.ambient == other.ambient && shot.lights.size() == 3 && shot.lights[0].color == other.lights[0].color;
-  });
-  if (ImGui::BeginCombo("light", present == kLightings.end() ? "as given" : present->name)) {
-    for (const Lighting& lighting : kLightings) {
-      if (!ImGui::Selectable(lighting.name, &lighting == present)) continue;
-      useLighting(lighting, shot);
-      changed = true;
-    }
-    ImGui::EndCombo();
-  }
-  if (changed) viewer.changed();
+// Of `count` buttons in a row, `gap` apart.
+float buttonWidth(int count, float gap) {
+  return (ImGui::GetContentRegionAvail().x - static_cast<float>(count - 1) * gap) / static_cast<float>(count);
 }
 
 void viewPart(Viewer& viewer) {
+  const float width = buttonWidth(4, 4);
   const auto button = [&](const char* label, Action action, bool same_line) {
     if (same_line) ImGui::SameLine(0, 4);
-    if (ImGui::Button(label, {60, 0})) viewer.act(action);
+    if (ImGui::Button(label, {width, 0})) viewer.act(action);
   };
   button("front", Action::kFront, false);
   button("right", Action::kRight, true);
@@ -157,9 +71,6 @@ void viewPart(Viewer& viewer) {
   button("fit", Action::kFit, true);
   bool ortho = viewer.state().shot.view.ortho_height.has_value();
   if (ImGui::Checkbox("orthographic", &ortho)) viewer.act(Action::kProjection);
-  ImGui::SameLine(150);
-  bool smooth = viewer.state().smooth;
-  if (ImGui::Checkbox("smooth", &smooth)) viewer.act(Action::kSmooth);
 }
 
 void row(const char* name, const std::string& value) {
@@ -225,7 +136,7 @@ void statisticsPart(Viewer& viewer) {
   std::array<char, 40> label{};
   std::snprintf(label.data(), label.size(), "%.1f ms", stats.ms);
   ImGui::PlotLines("##ms", state.frame_ms.data(), static_cast<int>(state.frame_ms.size()), 0, label.data(), 0,
-                   1.15f * highest, {250, 42});
+                   1.15f * highest, {ImGui::GetContentRegionAvail().x, 42});
   row("drawn", grouped(stats.drawn) + " triangles");
   std::array<char, 48> ratio{};
   std::snprintf(ratio.data(), ratio.size(), "%.2f x drawn",
@@ -240,25 +151,27 @@ void statisticsPart(Viewer& viewer) {
 }
 
 void savePart(Viewer& viewer) {
+  const float width = buttonWidth(3, 8);
   ViewerState& state = viewer.state();
-  if (ImGui::Button("picture", {78, 0})) viewer.act(Action::kSavePicture);
+  if (ImGui::Button("picture", {width, 0})) viewer.act(Action::kSavePicture);
   markPlace(state, "save picture");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("the picture without panels, as PNG (s)");
   ImGui::SameLine(0, 8);
   const Recorder* recorder = viewer.recorder();
-  if (ImGui::Button(recorder != nullptr ? "stop" : "film", {78, 0})) viewer.act(Action::kFilm);
+  if (ImGui::Button(recorder != nullptr ? "stop" : "film", {width, 0})) viewer.act(Action::kFilm);
   markPlace(state, "film");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("the range of the time line (v)");
   ImGui::SameLine(0, 8);
-  if (ImGui::Button("camera", {78, 0})) viewer.act(Action::kWriteCamera);
+  if (ImGui::Button("camera", {width, 0})) viewer.act(Action::kWriteCamera);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("for --camera (w)");
   if (viewer.recorder() != nullptr) {
     recorder = viewer.recorder();
     const std::string text = std::to_string(recorder->taken()) + " of " + std::to_string(recorder->count());
-    ImGui::ProgressBar(static_cast<float>(recorder->taken()) / static_cast<float>(recorder->count()), {250, 0},
-                       text.c_str());
+    ImGui::ProgressBar(static_cast<float>(recorder->taken()) / static_cast<float>(recorder->count()),
+                       {ImGui::GetContentRegionAvail().x, 0}, text.c_str());
     return;
   }
+  if (!ImGui::TreeNode("film options")) return;
   ImGui::SetNextItemWidth(kNumberWidth);
   if (ImGui::BeginCombo("film as", state.film_kind == FilmKind::kPng ? "PNG pictures" : "y4m")) {
     if (ImGui::Selectable("PNG pictures", state.film_kind == FilmKind::kPng)) state.film_kind = FilmKind::kPng;
@@ -268,40 +181,28 @@ void savePart(Viewer& viewer) {
   ImGui::SetNextItemWidth(kNumberWidth);
   ImGui::SliderInt("between frames", &state.film_between, 0, 9);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("pictures between two frames of the data");
+  ImGui::TreePop();
 }
 
 }  // namespace
 
-void toggleRoom(scene::Background& background) {
-  if (background.room) return background.room.reset();
-  const bool is_dark = background.top.x + background.bottom.x < 1;
-  background.room = is_dark ? glm::dvec3(0.16, 0.18, 0.21) : *scene::Background{}.room;
-}
-
-void toggleDark(scene::Background& background) {
-  const bool is_dark = background.top.x + background.bottom.x < 1, has_room = background.room.has_value();
-  background = is_dark ? scene::Background{} : scene::Background{{0.10, 0.12, 0.15}, {0.20, 0.23, 0.27}, {}};
-  if (background.room.has_value() != has_room) toggleRoom(background);
-}
-
 void layOutSide(Viewer& viewer, const PanelLayout& layout) {
-  ImGui::TextDisabled("press ? for the keys");
+  ImGui::TextDisabled("press ? for all keys");
   const auto part = [&](const char* title, bool open, void (*body)(Viewer&)) {
-    if (!ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0)) return;
+    const bool is_open = ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
     markPlace(viewer.state(), title);
-    body(viewer);
+    if (is_open) body(viewer);
   };
   // What does not fit at first is one click away rather than below the end.
   part("Files", true, filesPart);
-  part("Colours", true, [](Viewer& v) {
-    materialPart(v);
-    ImGui::Separator();
-    surroundingsPart(v);
-  });
-  part("View", layout.height >= 780, viewPart);
   part("Save", true, savePart);
-  part("Statistics", layout.height >= 640, statisticsPart);
-  part("Budget", layout.height >= 860, budgetPart);
+  part("Colours", true, layOutColors);
+  part("Columns", layout.height >= 640, layOutColumns);
+  part("Material", false, layOutMaterial);
+  part("Background", false, layOutBackground);
+  part("View", layout.height >= 780, viewPart);
+  part("Statistics", layout.height >= 900, statisticsPart);
+  part("Budget", layout.height >= 1080, budgetPart);
 }
 
 }  // namespace tet4d::host

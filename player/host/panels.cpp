@@ -9,7 +9,8 @@
 namespace tet4d::host {
 namespace {
 
-constexpr double kGap = 12, kSideWidth = 276, kBarHeight = 84;
+constexpr double kGap = 12, kSideWidth = 276, kBarHeight = 84, kTallBarHeight = 112;
+constexpr double kWideBar = 1080;  // all buttons in one row
 constexpr double kLeastWidthForSide = 640, kLeastHeightForSide = 300, kLeastWidthForBar = 420, kLeastHeightForBar = 160;
 constexpr float kFontUnits = 13;
 
@@ -22,6 +23,7 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
 }  // namespace
 
 void stylePanels(double scale) {
+  ImGui::GetStyle() = ImGuiStyle();
   ImGui::StyleColorsDark();
   ImGuiStyle& style = ImGui::GetStyle();
   style.WindowRounding = 6;
@@ -56,7 +58,8 @@ void stylePanels(double scale) {
   set(ImGuiCol_Separator, 0.30f, 0.35f, 0.40f, 0.6f);
   // Drawn at the framebuffer's own resolution, laid out in units.
   ImFontConfig font;
-  font.SizePixels = kFontUnits * static_cast<float>(std::clamp(scale, 1.0, 4.0));
+  font.SizePixels = kFontUnits * static_cast<float>(std::clamp(scale, 0.5, 8.0));
+  ImGui::GetIO().Fonts->Clear();
   ImGui::GetIO().Fonts->AddFontDefault(&font);
   ImGui::GetIO().FontGlobalScale = kFontUnits / font.SizePixels;
 }
@@ -68,7 +71,8 @@ PanelLayout panelLayout(const ViewerState& state) {
   layout.side = state.panels && layout.width >= kLeastWidthForSide && layout.height >= kLeastHeightForSide;
   layout.bar = state.panels && layout.width >= kLeastWidthForBar && layout.height >= kLeastHeightForBar;
   layout.side_right = kGap + kSideWidth;
-  layout.bar_top = layout.height - kGap - kBarHeight;
+  layout.bar_is_tall = layout.width < kWideBar;
+  layout.bar_top = layout.height - kGap - (layout.bar_is_tall ? kTallBarHeight : kBarHeight);
   return layout;
 }
 
@@ -89,10 +93,11 @@ void layOutPanels(Viewer& viewer) {
   }
   if (layout.bar) {
     ImGui::SetNextWindowPos(vec(kGap, layout.bar_top));
-    ImGui::SetNextWindowSize(vec(layout.width - 2 * kGap, kBarHeight));
+    ImGui::SetNextWindowSize(vec(layout.width - 2 * kGap, layout.height - kGap - layout.bar_top));
     if (ImGui::Begin("bar", nullptr, kFixed | ImGuiWindowFlags_NoScrollWithMouse)) layOutBar(viewer, layout);
     ImGui::End();
   }
+  if (viewer.state().panels) layOutHint(viewer, layout);
   if (viewer.state().help) layOutHelp(layout);
   layOutMessages(viewer, layout);
 }
@@ -118,13 +123,34 @@ void layOutHelp(const PanelLayout& layout) {
         ImGui::TextColored(accent, "%s", group);
       }
       ImGui::TextUnformatted(binding.label);
-      ImGui::SameLine(60);
+      ImGui::SameLine(54);
       ImGui::TextUnformatted(binding.meaning);
     }
     ImGui::Dummy({1, 4});
     ImGui::TextColored(accent, "Mouse");
     for (const Gesture& gesture : gestures()) ImGui::Text("%s: %s", gesture.label, gesture.meaning);
     ImGui::EndTable();
+  }
+  ImGui::End();
+}
+
+void layOutHint(Viewer& viewer, const PanelLayout& layout) {
+  const bool is_empty = viewer.files().count() == 0;
+  if (!is_empty && !viewer.state().is_new) return;
+  const double left = layout.side ? layout.side_right : 0, bottom = layout.bar ? layout.bar_top : layout.height;
+  const char* text = is_empty
+                         ? "Drop a film (.t4d) on this window to open it"
+                         : "drag: turn    wheel: zoom    Space: play    c: colours    s: save a picture    ?: more";
+  const double room = layout.width - left - 2 * kGap;
+  if (double{ImGui::CalcTextSize(text).x} + 20 > room)
+    text = is_empty ? "Drop a .t4d file here" : "Space: play    s: save    ?: keys";
+  if (double{ImGui::CalcTextSize(text).x} + 20 > room) return;
+  const double y = is_empty ? bottom / 2 : kGap;
+  ImGui::SetNextWindowPos(vec(left + (layout.width - left) / 2, y), ImGuiCond_Always, {0.5f, is_empty ? 0.5f : 0.0f});
+  if (ImGui::Begin("hint", nullptr, kFixed | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs)) {
+    ImGui::TextUnformatted(text);
+    const ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    viewer.state().places["hint"] = {double{low.x}, double{low.y}, double{size.x}, double{size.y}};
   }
   ImGui::End();
 }

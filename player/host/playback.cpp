@@ -155,8 +155,10 @@ Status play(const Film& film, std::span<stream::Pager* const> pagers, render::Re
     }
     FrameCost cost{};
     cost.index = i;
-    const auto image = drawFrame(film, i, foresight, economy, pagers, renderer, cost);
+    auto image = drawFrame(film, i, foresight, economy, pagers, renderer, cost);
     if (!image.ok()) return image.fault();
+    drawLegends(image.value(), film.legends, {0, 0, double{1} * film.format.width, double{1} * film.format.height},
+                legendLine(film.format.width, film.format.height), isDark(film.shot.background));
     if (sink != nullptr) {
       if (Status status = sink->add(image.value()); !status.ok()) return status;
     }

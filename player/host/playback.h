@@ -10,6 +10,7 @@
 
 #include "player/host/contact_sheet.h"
 #include "player/host/film.h"
+#include "player/host/legend.h"
 #include "player/render/renderer.h"
 #include "player/scene/dyntri_chooser.h"
 #include "player/scene/frame_budget.h"
@@ -36,8 +37,9 @@ struct Film {
   scene::Shot shot;
   scene::Format format;
   bool smooth = true;
-  double orbit_degrees = 0;        // the camera's turn over the whole film, in equal steps; 360 closes the circle
-  std::vector<PictureTime> times;  // one picture each
+  double orbit_degrees = 0;          // the camera's turn over the whole film, in equal steps; 360 closes the circle
+  std::vector<PictureTime> times;    // one picture each
+  std::vector<Legend> legends = {};  // drawn into every picture
   // Most bytes the plain C++ renderer may take for the triangles of one picture; without effect on gl.
   std::uint64_t triangle_bytes = std::numeric_limits<std::uint64_t>::max();
   Arrival arrival = Arrival::kWait;

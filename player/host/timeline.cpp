@@ -12,7 +12,7 @@ constexpr double kFramesPerSecond = 12, kLongestLeap = 0.25;
 }  // namespace
 
 const char* loopName(Loop loop) {
-  return loop == Loop::kLoop ? "loop" : loop == Loop::kPingPong ? "back and forth" : "once";
+  return loop == Loop::kLoop ? "loop" : loop == Loop::kPingPong ? "to and fro" : "once";
 }
 
 void Timeline::setTable(std::vector<double> times) {

@@ -20,6 +20,7 @@ constexpr double kWheelSeconds = 0.25;       // after a turn of the wheel anothe
 constexpr double kTurnDegreesPerUnit = 0.4;  // of a drag
 constexpr double kZoomPerNotch = 0.88;
 constexpr double kPageSeconds = 0.005;  // between looks whether pages have come
+constexpr double kScanSeconds = 0.02;   // and whether a column's range is known
 
 ImGuiIO& guiIo() { return ImGui::GetIO(); }
 
@@ -77,6 +78,16 @@ Status Viewer::open(const std::string& path) {
   filesChanged();
   if (is_first) state_.timeline.setTime(state_.timeline.first());
   return {};
+}
+
+ViewerFile* Viewer::selected() {
+  const auto& files = files_.all();
+  if (state_.selected >= files.size() || files[state_.selected] == nullptr) {
+    const auto at = std::find_if(files.begin(), files.end(), [](const auto& file) { return file != nullptr; });
+    if (at == files.end()) return nullptr;
+    state_.selected = static_cast<std::size_t>(at - files.begin());
+  }
+  return files[state_.selected].get();
 }
 
 void Viewer::removeFile(std::size_t rank) {
@@ -139,11 +150,13 @@ void Viewer::takeEvent(const Event& event) {
   if (const auto* size = std::get_if<Resized>(&event)) return resized(*size);
   if (const auto* button = std::get_if<PointerButton>(&event)) {
     if (button->button < 0 || button->button > 2) return;
+    state_.is_new = false;
     io.MouseDown[button->button] = button->down;
     button_ = *button;
     if (!button->down) drag_ = Drag::kNone;
   } else if (const auto* wheel = std::get_if<Scrolled>(&event)) {
     wheel_ += wheel->by;
+    state_.is_new = false;
     io.MouseWheel += static_cast<float>(wheel->by);
   } else if (const auto* typed = std::get_if<Typed>(&event)) {
     io.AddInputCharacter(typed->character);
@@ -183,10 +196,18 @@ void Viewer::keyChanged(const KeyChanged& event) {
 void Viewer::resized(const Resized& event) {
   state_.width = event.width;
   state_.height = event.height;
-  if (event.scale > 0) state_.scale = event.scale;
+  if (event.scale > 0 && !options_.fixed_scale) rescale(event.scale);
   scene_changed_ = true;
   if (event.width == 0 || event.height == 0 || moved_by_hand_ || options_.shot || files_.count() == 0) return;
   state_.shot.view = scene::fit(state_.shot.view, pictureSize(), freeFrame(), box_);
+}
+
+// Letters are drawn at the framebuffer's own resolution: another scale, other letters.
+void Viewer::rescale(double scale) {
+  if (scale == state_.scale) return;
+  state_.scale = scale;
+  stylePanels(scale);
+  if (canvas_ != nullptr) canvas_->uploadFonts();
 }
 
 // What the pointer does in the picture, once the panels have said whether it is theirs.
@@ -228,6 +249,8 @@ Viewer::Outcome Viewer::frame(double seconds) {
   std::erase_if(state_.messages, [](const Message& m) { return m.age_s > messageSeconds(m); });
   if (state_.messages.size() != messages) settling_ = std::max(settling_, 1);
   wheeled_s_ += seconds;
+  const std::size_t scans = files_.scansDone();
+  if (std::exchange(scans_seen_, scans) != scans) settling_ = 3;
   Outcome outcome;
   if (canvas_ == nullptr) {  // not started: sizes are taken, nothing is drawn
     while (!events_.empty()) takeEvents();
@@ -256,6 +279,8 @@ bool Viewer::isMoving() const {
 
 double Viewer::waitSeconds() const {
   if (state_.quit || state_.timeline.playing() || recorder_ || settling_ > 0 || scene_changed_) return 0;
+  if (files_.isScanning()) return kScanSeconds;
+  if (files_.scansDone() != scans_seen_) return 0;
   if (state_.stats.pages_waiting > 0) return kPageSeconds;
   double wait = picture_is_full_ ? std::numeric_limits<double>::infinity() : 0.05;
   for (const Message& message : state_.messages) wait = std::min(wait, messageSeconds(message) - message.age_s + 0.01);
@@ -265,6 +290,7 @@ double Viewer::waitSeconds() const {
 bool Viewer::drawChanges(double seconds) {
   if (recorder_) return recordPicture();
   if (state_.timeline.advance(seconds) || state_.stats.pages_waiting > 0) scene_changed_ = true;
+  if (state_.stats.ranges_waiting > files_.rangesWaiting()) scene_changed_ = true;
   const bool full = !isMoving();
   if (!scene_changed_ && (picture_is_full_ || !full)) return false;
   scene_changed_ = false;
@@ -292,9 +318,23 @@ Result<render::Image> Viewer::draw(double time, const scene::Format& format, boo
   std::vector<Fault> faults;
   const scene::DrawList list = files_.list({time, format, state_.smooth, pace(), whole}, state_.shot, stats, faults);
   auto image = renderer_->draw(list, files_.residencies());
+  if (image.ok() && state_.legend) drawLegendOn(image.value(), whole);
   stats.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   for (const Fault& fault : faults) report(fault);
   return image;
+}
+
+// Where the panels leave room; in a picture that is kept, where there are none.
+void Viewer::drawLegendOn(render::Image& image, bool whole) const {
+  const std::vector<Legend> legends = files_.legends();
+  if (legends.empty()) return;
+  const double width = image.width, height = image.height;
+  const double factor = width / std::max(1u, state_.width);
+  const scene::Frame room = freeFrame();
+  const scene::Frame within =
+      whole ? scene::Frame{0, 0, width, height}
+            : scene::Frame{factor * room.left, factor * room.top, factor * room.width, factor * room.height};
+  drawLegends(image, legends, within, factor * legendLine(state_.width, state_.height), isDark(state_.shot.background));
 }
 
 void Viewer::show(render::Image picture, const SceneStats& stats) {
@@ -456,22 +496,53 @@ void Viewer::actOnView(Action action) {
   }
 }
 
-void Viewer::act(Action action) {
-  ImGui::SetCurrentContext(gui_);
-  settling_ = 3;
-  if (action <= Action::kRangeAll) return actOnTime(action);
-  if (action <= Action::kProjection) return actOnView(action);
-  scene_changed_ |= action <= Action::kDark;
+// From the material by parts, if there are several, and each column to the material again.
+void Viewer::colorByNext() {
+  ViewerFile* file = selected();
+  if (file == nullptr) return say("there is nothing to colour: drop a file on the window");
+  scene::Coloring& coloring = file->coloring;
+  const std::size_t columns = file->file.columns().size();
+  const bool has_parts = file->file.parts().size() > 1;
+  if (columns == 0 && !has_parts) return say(file->path + " has neither columns nor parts to colour by");
+  if (coloring.by == scene::ColorBy::kMaterial && has_parts) {
+    coloring.by = scene::ColorBy::kPart;
+    return;
+  }
+  const std::size_t next = coloring.by == scene::ColorBy::kColumn ? coloring.column + 1 : 0;
+  colorByColumn(*file, next);
+}
+
+void Viewer::actOnLook(Action action) {
+  scene_changed_ = true;
   switch (action) {
     case Action::kSmooth:
       state_.smooth = !state_.smooth;
       return;
+    case Action::kNextColors:
+      return colorByNext();
+    case Action::kLegend:
+      state_.legend = !state_.legend;
+      if (state_.legend && files_.legends().empty()) say("the legend explains colours by a column or by parts: c");
+      return;
+    case Action::kLit:
+      if (ViewerFile* file = selected()) file->coloring.lit = !file->coloring.lit;
+      return;
     case Action::kRoom:
       toggleRoom(state_.shot.background);
       return;
-    case Action::kDark:
+    default:
       toggleDark(state_.shot.background);
-      return;
+  }
+}
+
+void Viewer::act(Action action) {
+  ImGui::SetCurrentContext(gui_);
+  settling_ = 3;
+  state_.is_new = false;
+  if (action <= Action::kRangeAll) return actOnTime(action);
+  if (action <= Action::kProjection) return actOnView(action);
+  if (action <= Action::kDark) return actOnLook(action);
+  switch (action) {
     case Action::kSavePicture:
       return savePictureNow();
     case Action::kFilm:

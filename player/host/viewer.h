@@ -29,9 +29,10 @@ namespace tet4d::host {
 struct ViewerOptions {
   std::uint32_t width = 1280, height = 720;  // framebuffer, pixels
   double scale = 1;                          // pixels a unit of the panels
+  bool fixed_scale = false;                  // whatever the display says of itself
   std::uint32_t samples = 4;                 // of a picture at rest; while something moves as many as the budget allows
   bool smooth = true, panels = true;
-  std::uint64_t budget_bytes = std::uint64_t{1} << 30;  // of pages kept, of each file
+  std::uint64_t budget_bytes = std::uint64_t{1} << 30;  // of pages kept, of all files together
   unsigned threads = 2;
   std::string directory = ".";      // of what is saved
   std::optional<scene::Shot> shot;  // without: fitted to what is opened first
@@ -53,6 +54,8 @@ struct ViewerState {
   std::uint32_t samples = 4;
   double budget_ms = 50;  // of a picture while something moves
   bool smooth = true, panels = true, help = false, quit = false;
+  bool legend = true;        // where colours mean something
+  bool is_new = true;        // nobody has touched anything yet: a hint says what can be done
   std::size_t selected = 0;  // rank of the file whose colours are shown
   FilmKind film_kind = FilmKind::kPng;
   int film_between = 0;
@@ -116,6 +119,8 @@ class Viewer {
   void changed() { scene_changed_ = true; }
   void setBudget(double ms, std::uint32_t samples);
   void toggleFilm();
+  // The file whose colours are shown, or null.
+  ViewerFile* selected();
 
  private:
   void takeEvents();
@@ -138,6 +143,10 @@ class Viewer {
   void look(scene::StandardView side);
   void actOnTime(Action action);
   void actOnView(Action action);
+  void actOnLook(Action action);
+  void colorByNext();
+  void rescale(double scale);
+  void drawLegendOn(render::Image& image, bool whole) const;
   double waitSeconds() const;
   bool isMinimised() const { return state_.width == 0 || state_.height == 0; }
   glm::dvec2 pictureSize() const { return {state_.width, state_.height}; }
@@ -163,6 +172,7 @@ class Viewer {
   enum class Drag : std::uint8_t { kNone, kTurn, kPan } drag_ = Drag::kNone;
   glm::dvec2 pointer_{-1, -1};  // pixels
   double wheel_ = 0;
+  std::size_t scans_seen_ = 0;  // columns whose range the panels show
   std::optional<PointerButton> button_;
 };
 

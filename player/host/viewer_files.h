@@ -3,12 +3,17 @@
 // A file keeps its rank for as long as the program runs, also when others are removed: renderers keep copies by rank.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "player/host/column_scans.h"
+#include "player/host/legend.h"
+#include "player/scene/coloring.h"
 #include "player/scene/scene_files.h"
 #include "player/stream/pager.h"
 
@@ -20,10 +25,15 @@ Result<dyntri::File> openDynamicTriangles(const std::string& path);
 struct ViewerFile {
   std::string path;
   dyntri::File file;
-  scene::Material material;
+  scene::Material material = {};
   bool shown = true;
-  std::unique_ptr<stream::Pager> pager;  // after `file`: goes before it
-  std::uint64_t damaged = 0;             // pages that cannot be read, so far: reported once each, then left out
+  scene::Coloring coloring = {};
+  std::unique_ptr<stream::Pager> pager = nullptr;  // after `file`: goes before it
+  std::unique_ptr<ColumnScans> scans = nullptr;    // likewise
+  std::uint64_t damaged = 0;  // pages that cannot be read, so far: reported once each, then left out
+
+  // What the present coloring comes to; nothing by material, or as long as the values' range is not known.
+  std::optional<scene::DrawColumn> drawn() const;
 };
 
 // What one picture cost and had to do with.
@@ -32,6 +42,7 @@ struct SceneStats {
   std::uint64_t pages_active = 0;   // to be drawn
   std::uint64_t pages_waiting = 0;  // of them, on their way: not in the picture
   std::uint64_t pages_damaged = 0;
+  std::uint64_t ranges_waiting = 0;  // columns whose range is being found out: drawn by material until then
   double ms = 0;
 };
 
@@ -44,12 +55,16 @@ struct Pace {
 
 class ViewerFiles {
  public:
+  // budget_bytes: of pages, of all files together; each open file has an equal share of it.
   ViewerFiles(std::uint64_t budget_bytes, unsigned threads)
       : budget_bytes_(budget_bytes), threads_(threads > 1 ? threads : 1) {}
 
-  // The file comes after those that are open. A file that is open already is read anew in its place.
+  // The file comes after those that are open, and they make room for it. A file that is open already is read anew, with
+  // the colours that it had as far as it still has their columns.
   Status open(const std::string& path, const scene::Shot& shot);
   void remove(std::size_t rank);
+  // Bytes of pages that a file may keep now.
+  std::uint64_t share() const { return budget_bytes_ / std::max<std::size_t>(1, count()); }
 
   // By rank; null where one was removed.
   const std::vector<std::unique_ptr<ViewerFile>>& all() const { return files_; }
@@ -71,6 +86,12 @@ class ViewerFiles {
   // The draw list at a time; pages it lacks, and those of the near future, are asked for. A page that cannot be read is
   // left out, and its Fault added to `faults` once.
   scene::DrawList list(const Request& request, const scene::Shot& shot, SceneStats& stats, std::vector<Fault>& faults);
+  // Whether a thread is finding out where values lie; how many files shown wait for it.
+  bool isScanning() const;
+  std::uint64_t rangesWaiting() const;
+  std::size_t scansDone() const;
+  // Of the files shown, by their present coloring.
+  std::vector<Legend> legends() const;
   // What renderers see of the files, by rank.
   std::vector<const stream::Residency*> residencies() const;
 
@@ -78,6 +99,9 @@ class ViewerFiles {
   std::vector<scene::SceneFile> sceneFiles(std::vector<std::size_t>* ranks) const;
   static void askForPages(ViewerFile& file, const Request& request, const scene::DrawList& list,
                           scene::DrawSurface& surface, SceneStats& stats);
+
+  void divideBudget();
+  void askForRanges(bool whole, SceneStats& stats, std::vector<Fault>& faults);
 
   std::uint64_t budget_bytes_;
   unsigned threads_;

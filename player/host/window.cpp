@@ -38,13 +38,15 @@ ViewerOptions viewerOptions(const PlayerRequest& request) {
   options.directory = request.directory;
   options.threads = request.threads;
   options.shot = request.shot;
+  options.fixed_scale = request.ui_scale.has_value();
+  options.scale = request.ui_scale.value_or(1);
   return options;
 }
 
 // The renderer of the scene, in the context that is current.
 Result<std::unique_ptr<render::Renderer>> rendererOf(const PlayerRequest& request, render::GlResolver resolver) {
   if (request.renderer == "cpu") return render::makeCpuRenderer(request.threads);
-  return render::makeGlRenderer(resolver, request.budget_bytes);
+  return render::makeGlRenderer(resolver, request.gpu_bytes);
 }
 
 Status prepare(Viewer& viewer, const PlayerRequest& request, render::GlResolver resolver) {
@@ -53,6 +55,8 @@ Status prepare(Viewer& viewer, const PlayerRequest& request, render::GlResolver 
   if (Status status = viewer.start(resolver, std::move(renderer).value()); !status.ok()) return status;
   for (const std::string& file : request.files) {
     if (Status status = viewer.open(file); !status.ok()) return status;
+    const std::size_t number = viewer.files().all().size() - 1;
+    if (number < request.colorings.size()) viewer.files().all()[number]->coloring = request.colorings[number];
   }
   if (request.budget_ms) viewer.setBudget(*request.budget_ms, request.samples);
   if (request.time) viewer.state().timeline.setTime(*request.time);
@@ -120,6 +124,8 @@ Result<WindowPointer> openGlfwWindow(const PlayerRequest& request) {
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);  // pictures come finished
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  // A window on a dense display is as large to the eye as on another.
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, request.ui_scale ? GLFW_FALSE : GLFW_TRUE);
   const std::string title =
       "tet4d" + (request.files.empty() ? std::string() : " - " + request.files.front()) +
       (request.files.size() > 1 ? " and " + std::to_string(request.files.size() - 1) + " more" : "");
@@ -295,7 +301,7 @@ Status runWindow(const PlayerRequest& request) {
   float content = 1;
   glfwGetWindowContentScale(window.get(), &content, nullptr);
   ViewerOptions options = viewerOptions(request);
-  options.scale = std::max(1.0, double{content});
+  if (!options.fixed_scale) options.scale = std::max(1.0, double{content});
   Viewer viewer(options);
   connect(window.get(), viewer);
   tellSize(window.get());

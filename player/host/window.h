@@ -9,6 +9,7 @@
 
 #include "formats/core/result.h"
 #include "player/render/image.h"
+#include "player/scene/coloring.h"
 #include "player/scene/shot.h"
 
 namespace tet4d::host {
@@ -20,13 +21,16 @@ struct PlayerRequest {
   std::uint32_t width = 1280, height = 720;  // framebuffer off-screen, units of the screen for a window
   std::uint32_t samples = 4;
   bool smooth = true;
-  std::uint64_t budget_bytes = std::uint64_t{1} << 30;
-  std::optional<double> budget_ms;  // of a picture while something moves
-  std::optional<double> time;       // world; without: the first
-  std::optional<scene::Shot> shot;  // without: fitted
-  std::string directory = ".";      // of what is saved
-  std::string typed;                // keys pressed once everything is open; a tabulator is Tab, an escape Esc
-  std::function<bool()> stop;       // asked between pictures, at least five times a second: true closes the window
+  std::uint64_t budget_bytes = std::uint64_t{1} << 30;  // of pages, of all files together, those to come too
+  std::uint64_t gpu_bytes = std::uint64_t{1} << 30;     // of their copies in the driver
+  std::optional<double> ui_scale;                       // pixels a unit of the panels; without: the display's own
+  std::vector<scene::Coloring> colorings;               // of `files`, in order; others: by material
+  std::optional<double> budget_ms;                      // of a picture while something moves
+  std::optional<double> time;                           // world; without: the first
+  std::optional<scene::Shot> shot;                      // without: fitted
+  std::string directory = ".";                          // of what is saved
+  std::string typed;           // keys pressed once everything is open; a tabulator is Tab, an escape Esc
+  std::function<bool()> stop;  // asked between pictures, at least five times a second: true closes the window
   // For tests: the window closes after so many pictures (0: never), and leaves what it shows in a file.
   std::uint64_t quit_after = 0;
   std::string screenshot;

@@ -40,7 +40,9 @@ std::vector<RasterVertex> verticesOf(const scene::DrawList& list, const scene::D
     for (std::size_t i = 0; i < vertices.size(); ++i)
       vertices[i].normal = unitOrZero(surface.normal_to_relative * toGlm(slice.areas[i]));
   }
-  if (surface.column) {
+  if (surface.column && surface.column->of_parts) {
+    for (RasterVertex& vertex : vertices) vertex.value = scene::partValue(page.part);
+  } else if (surface.column) {
     const std::vector<float> values = sliceValues(page, slice.keys, surface.t, *surface.column,
                                                   source.residentColumn(number, surface.column->column));
     for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].value = values[i];

@@ -115,6 +115,7 @@ class GlRenderer final : public Renderer {
     program.set("has_file_normals", columns.value().has_normals ? 1 : 0);
     program.set("components", columns.value().components);
     program.set("component", surface.column ? surface.column->component : 0);
+    program.set("page_value", scene::partValue(view->part));
     glActiveTexture(GL_TEXTURE0 + kNormalSumsUnit);
     glBindTexture(GL_TEXTURE_2D, sums_.texture.get());
     picture_.bind();
@@ -123,6 +124,7 @@ class GlRenderer final : public Renderer {
     return {};
   }
 
+  static constexpr int kPageValue = -1;  // one value for all of the page
   struct BoundColumns {
     bool has_normals = false;
     int components = 0;  // 0: no values
@@ -132,7 +134,9 @@ class GlRenderer final : public Renderer {
                                    std::size_t number, const stream::Residency& source) {
     BoundColumns bound;
     const std::size_t vertices = static_cast<std::size_t>(page.key_count - page.edge_count);
-    if (surface.column) {
+    if (surface.column && surface.column->of_parts) {
+      bound.components = kPageValue;
+    } else if (surface.column) {
       const auto rows = source.residentColumn(number, surface.column->column);
       if (rows.size() >= surface.column->components * vertices) {
         if (Status status = pages_.bindColumn(page, surface.column->column, rows, kColumnUnit); !status.ok())

@@ -19,7 +19,6 @@ void setView(const GlProgram& program, const scene::DrawList& list) {
     program.set(("light_color[" + index).c_str(), list.lights[i].color);
   }
   program.set("ambient", list.ambient);
-  program.set("refraction_depth", list.refraction_depth);
   program.set("up", list.up);
   program.set("background_top", list.background_top);
   program.set("background_bottom", list.background_bottom);
@@ -36,11 +35,14 @@ void GlShading::set(const GlProgram& program, const scene::DrawList& list, const
   program.set("shininess", surface.shininess);
   program.set("refraction", surface.refraction);
   program.set("tint", surface.tint);
+  program.set("refraction_depth", list.refraction_depth * surface.depth);
+  program.set("lit", surface.lit ? 1 : 0);
   program.set("by_column", surface.column ? 1 : 0);
   program.set("color_table", kColorTableUnit);
   if (!surface.column) return;
   program.set("low", surface.column->low);
   program.set("high", surface.column->high);
+  program.set("logarithmic", surface.column->logarithmic ? 1 : 0);
   program.set("below", surface.column->below);
   program.set("above", surface.column->above);
   program.set("unknown", surface.column->unknown);

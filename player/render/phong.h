@@ -2,7 +2,7 @@
 // does.
 //
 // Refraction (Ponchio & Hormann 2008, sec. 7.1, names it and no more). The viewing ray is bent once, where it meets the
-// surface, and sees the background (gradient and room) refraction_depth further on; the mirrored ray sees the gradient.
+// surface, and sees the background (gradient and room) some depth further on; the mirrored ray sees the gradient.
 // How much is mirrored is Fresnel's formula for unpolarised light: unlike Schlick's it vanishes with an index of 1 and
 // knows total reflection. What other surfaces lie behind is not seen.
 #pragma once
@@ -36,8 +36,8 @@ inline glm::vec3 linearOf(const glm::vec3& srgb) {
 
 // The background where the ray from the fragment along `ray` meets it; rows of `behind` run from the top. Linear.
 inline glm::vec3 backgroundAlong(const scene::DrawList& list, const Image& behind, const Fragment& fragment,
-                                 const glm::vec3& ray) {
-  const glm::vec4 clip = list.relative_to_clip * glm::vec4(fragment.position + list.refraction_depth * ray, 1);
+                                 const glm::vec3& ray, float depth) {
+  const glm::vec4 clip = list.relative_to_clip * glm::vec4(fragment.position + depth * ray, 1);
   const glm::vec2 size(static_cast<float>(behind.width), static_cast<float>(behind.height));
   const glm::vec2 at = clip.w > 0 ? (0.5f * glm::vec2(clip) / clip.w + 0.5f) * size : fragment.pixel;
   const glm::vec2 texel = glm::floor(glm::clamp(at, glm::vec2(0), size - 1.0f));
@@ -60,7 +60,8 @@ inline glm::vec3 transparent(const scene::DrawList& list, const scene::DrawSurfa
   const float d = std::sqrt(below_root);
   const float along = (eta * c - d) / (eta * c + d), across = (c - eta * d) / (c + eta * d);
   const float reflected = c + d > 0 ? 0.5f * (along * along + across * across) : 1.0f;
-  const glm::vec3 through = backgroundAlong(list, behind, fragment, -eta * viewer + (eta * c - d) * n) *
+  const glm::vec3 through = backgroundAlong(list, behind, fragment, -eta * viewer + (eta * c - d) * n,
+                                            list.refraction_depth * surface.depth) *
                             (1.0f + surface.tint * (base - 1.0f));
   return through + reflected * (sky - through);
 }
@@ -77,6 +78,7 @@ inline glm::vec3 shade(const scene::DrawList& list, const scene::DrawSurface& su
                          : fragment.front ? surface.front_color
                                           : surface.back_color;
   const bool refracts = surface.refraction > 0;
+  if (!surface.lit && !refracts) return glm::clamp(base, 0.0f, 1.0f);
   glm::vec3 color = refracts ? transparent(list, surface, behind, fragment, viewer, n, base) : list.ambient * base;
   // Below it the highlight is less than 1e-9 of the light: most samples need no power.
   const float least_highlight = std::exp2(-30 / surface.shininess);

@@ -123,7 +123,7 @@ DrawList makeCamera(const WorldBox& box, const Shot& shot, const Format& format,
   list.background_bottom = glm::vec3(shot.background.bottom);
   if (shot.background.room) list.panels = panelsOf(box, shot.background, list);
   list.up = glm::vec3(glm::normalize(shot.view.up));
-  list.refraction_depth = static_cast<float>(box.radius() / 2);
+  list.refraction_depth = static_cast<float>(box.radius());
   return list;
 }
 
@@ -140,6 +140,7 @@ DrawSurface makeSurface(const WorldBox& own, const glm::dvec3& scene_centre, con
   surface.shininess = static_cast<float>(material.shininess);
   surface.refraction = static_cast<float>(material.refraction);
   surface.tint = static_cast<float>(material.tint);
+  surface.depth = static_cast<float>(material.depth);
   return surface;
 }
 

@@ -63,7 +63,9 @@ struct DrawSurface {
   float specular = 0, shininess = 1;
   // 0: opaque; 1 to 3: the index of what lies inside, see Material. `tint`: how much of the light takes the colour.
   float refraction = 0, tint = 0;
-  std::optional<DrawColumn> column;          // colours by a column, both sides alike, in place of the two colours
+  float depth = 1;  // times the list's refraction_depth
+  bool lit = true;  // false: the colour as it is, without light and highlight; without effect on what refracts
+  std::optional<DrawColumn> column;          // colours by a column or part, both sides alike, in place of the two
   std::optional<std::size_t> normal_column;  // three components, unit, world; without: normals of the slice
 
   float t = 0, last_t = 0;  // frames
@@ -86,7 +88,7 @@ struct DrawList {
   glm::vec3 background_top{0}, background_bottom{0};  // sRGB: the gradient runs in the encoded values
   std::vector<DrawPanel> panels;                      // behind everything, over the gradient; they do not overlap
   glm::vec3 up{0, 0, 1};                              // unit: where background_top is, for what a surface mirrors
-  float refraction_depth = 1;  // world units that a refracted ray goes before it meets the background
+  float refraction_depth = 1;  // world units that a refracted ray goes to meet the background, before depth
   std::vector<DrawSurface> surfaces;
 
   // Sums over the surfaces.

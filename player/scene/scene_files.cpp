@@ -81,13 +81,14 @@ DrawList makeDrawList(std::span<const SceneFile> files, const Shot& shot, const 
     list.surfaces.back().source = i;
     list.surfaces.back().column = files[i].column;
     list.surfaces.back().normal_column = files[i].normal_column;
+    list.surfaces.back().lit = files[i].lit;
   }
   return list;
 }
 
 std::vector<std::size_t> columnsOf(const SceneFile& file) {
   std::vector<std::size_t> columns;
-  if (file.column) columns.push_back(file.column->column);
+  if (file.column && !file.column->of_parts) columns.push_back(file.column->column);
   if (file.normal_column && (columns.empty() || columns[0] != *file.normal_column))
     columns.push_back(*file.normal_column);
   return columns;

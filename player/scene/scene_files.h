@@ -20,8 +20,9 @@ struct SceneFile {
   const dyntri::File* file = nullptr;  // must outlive the scene
   std::optional<Material> material;    // without: the shot's for the first file, a colour of its own for each other
   bool shown = true;
-  std::optional<DrawColumn> column = std::nullopt;          // colours by a column of the file
+  std::optional<DrawColumn> column = std::nullopt;          // colours by a column of the file, or by part
   std::optional<std::size_t> normal_column = std::nullopt;  // normals of the file in place of the slice's
+  bool lit = true;                                          // false: colours as they are
 };
 
 // The box of one file as it stands in its index space; of several, along the world's axes around all of them.

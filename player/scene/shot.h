@@ -37,6 +37,7 @@ struct Material {
   double shininess = 48;                    // exponent of Phong's highlight, >= 1
   double refraction = 0;  // 0: opaque; 1..3: index of what lies inside, behind which the background shows
   double tint = 0;        // 0..1, with refraction: how much of what shows through takes the colour
+  double depth = 0.5;     // 0..4, with refraction: of the background behind it, in radii of the scene's box
 };
 
 struct Background {

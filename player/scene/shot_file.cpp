@@ -182,7 +182,7 @@ void readMaterial(ObjectReader& reader, Material& material) {
   const Json* object = reader.find("material");
   if (object == nullptr) return;
   ObjectReader inner = reader.inner(*object, "material");
-  if (!inner.accepts({"color", "back_color", "specular", "shininess", "refraction", "tint"})) return;
+  if (!inner.accepts({"color", "back_color", "specular", "shininess", "refraction", "tint", "depth"})) return;
   inner.srgb("color", material.color);
   // One colour given means one colour on both sides.
   if (inner.has("color")) material.back_color = material.color;
@@ -193,6 +193,7 @@ void readMaterial(ObjectReader& reader, Material& material) {
   if (material.refraction > 0 && material.refraction < 1)
     inner.raise("refraction", "lies between 0 and 1", "give 0 for opaque, or an index between 1 and 3: water has 1.33");
   inner.number("tint", material.tint, 0, 1, "a number between 0 and 1");
+  inner.number("depth", material.depth, 0, 4, "a number of the box's radii between 0 and 4");
 }
 
 void readBackground(ObjectReader& reader, Background& background) {
@@ -279,9 +280,13 @@ std::string formatShot(const Shot& shot) {
     json["lights"].push_back({{"direction", toJson(light.direction)}, {"color", toJson(light.color)}});
   }
   json["ambient"] = toJson(shot.ambient);
-  json["material"] = {{"color", toJson(shot.material.color)},   {"back_color", toJson(shot.material.back_color)},
-                      {"specular", shot.material.specular},     {"shininess", shot.material.shininess},
-                      {"refraction", shot.material.refraction}, {"tint", shot.material.tint}};
+  json["material"] = {{"color", toJson(shot.material.color)},
+                      {"back_color", toJson(shot.material.back_color)},
+                      {"specular", shot.material.specular},
+                      {"shininess", shot.material.shininess},
+                      {"refraction", shot.material.refraction},
+                      {"tint", shot.material.tint},
+                      {"depth", shot.material.depth}};
   json["background"] = {{"top", toJson(shot.background.top)}, {"bottom", toJson(shot.background.bottom)}};
   json["background"]["checker"] = shot.background.checker;
   json["background"]["room"] = shot.background.room ? toJson(*shot.background.room) : Json(false);

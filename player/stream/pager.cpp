@@ -15,6 +15,17 @@ Pager::Pager(const dyntri::File& file, const PagerOptions& options)
 
 Pager::~Pager() = default;
 
+void Pager::setBudget(std::uint64_t bytes) {
+  const std::scoped_lock lock(state_->mutex);
+  state_->budget = bytes;
+  state_->to_read.notify_all();
+}
+
+std::uint64_t Pager::budget() const {
+  const std::scoped_lock lock(state_->mutex);
+  return state_->budget;
+}
+
 void Pager::useColumns(std::span<const std::size_t> columns) {
   in_use_ = {0};
   for (const std::size_t column : columns) {

@@ -41,6 +41,10 @@ class Pager final : public Residency {
 
   std::size_t size() const { return visible_.size() / stride_; }
 
+  // From the next want() on. What is held beyond a smaller budget goes as new pages make room, the frame's own last.
+  void setBudget(std::uint64_t bytes);
+  std::uint64_t budget() const;
+
   // The columns that come with each page from now on, by number; none at first. Others are not read.
   void useColumns(std::span<const std::size_t> columns);
 

@@ -44,10 +44,9 @@ struct Pager::State {
   ~State();
 
   const dyntri::File& file;
-  const std::uint64_t budget;
-
   mutable std::mutex mutex;
   std::condition_variable to_read, to_decode, arrival;
+  std::uint64_t budget;  // with the mutex held, as all below
   bool stopping = false, look_at_file = false, was_changed = false, was_replaced = false;
   std::vector<PageSlot> slots;          // by entry of the page table, as everything here
   std::vector<std::size_t> queue;       // kQueued, most urgent last

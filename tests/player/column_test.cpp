@@ -202,6 +202,54 @@ TEST_F(Columns, ShowTheValueInTheMiddle) {
   EXPECT_LT(glm::distance(middleOf(agreed(list, source, "middle")), expected), 0.02f);
 }
 
+TEST_F(Columns, OnALogarithmicMapFactorsAreEven) {
+  const scene::DrawColumn column = scene::makeDrawColumn(0, 1, 0, 1, 100, *findColorMap("viridis"), {false, true});
+  EXPECT_LT(glm::distance(colorOf(column, 10), glm::mix(column.table[127], column.table[128], 0.5f)), 1e-3f);
+  EXPECT_EQ(colorOf(column, 0), column.below);
+  EXPECT_EQ(colorOf(column, -5), column.below);
+  EXPECT_FALSE(scene::makeDrawColumn(0, 1, 0, 0, 1, *findColorMap("viridis"), {false, true}).logarithmic)
+      << "zero has no logarithm: linear";
+  const scene::DrawColumn turned = scene::makeDrawColumn(0, 1, 0, 0, 1, *findColorMap("viridis"), {true, false});
+  EXPECT_EQ(turned.table.front(), column.table.back());
+  Stage stage(test::writeTestSphere("columns_log.t4d", 2));
+  scene::DrawList list = stage.list(0.5f);
+  const WithColumns source(stage.source(), {[](const Vec4f& v) { return std::vector{std::exp(v.x - 4)}; }});
+  list.surfaces[0].column = column;
+  list.surfaces[0].column->high = 3000;
+  const render::Image by_factors = agreed(list, source, "logarithmic");
+  list.surfaces[0].column->logarithmic = false;
+  EXPECT_GT(test::compare(agreed(list, source, "linear"), by_factors).rms, 5);
+}
+
+TEST_F(Columns, WithoutLightColoursAreAsTheyAre) {
+  Stage stage(test::writeTestSphere("columns_unlit.t4d", 2));
+  scene::DrawList list = stage.list(0.5f);
+  list.surfaces[0].lit = false;
+  const render::Image image = agreed(list, stage.source(), "unlit");
+  EXPECT_LT(glm::distance(middleOf(image), list.surfaces[0].front_color), 0.005f);
+  list.surfaces[0].lit = true;
+  EXPECT_GT(test::compare(agreed(list, stage.source(), "lit"), image).rms, 3);
+}
+
+// Three parts side by side, one in each third of the picture.
+TEST_F(Columns, PartsHaveEachItsColour) {
+  Stage stage(test::writeParts("columns_parts.t4d"));
+  stage.shot.view.eye = {14.25, -60, 4};
+  stage.shot.view.target = {14.25, 4, 4};
+  stage.shot.view.ortho_height = 20;
+  scene::DrawList list = stage.list(0.5f);
+  list.surfaces[0].lit = false;
+  list.surfaces[0].column = scene::makePartColors();
+  const render::Image image = agreed(list, stage.source(), "parts");
+  for (std::uint32_t part = 0; part < 3; ++part) {
+    const double x = 150 + (4.25 + 10.0 * part - 14.25) * 10;
+    const std::uint8_t* p = image.row(100) + std::size_t{4} * static_cast<std::uint32_t>(x);
+    const glm::vec3 found(render::fromSrgb8(p[0]), render::fromSrgb8(p[1]), render::fromSrgb8(p[2]));
+    EXPECT_LT(glm::distance(found, list.surfaces[0].column->table[part]), 0.01f) << part;
+  }
+  EXPECT_EQ(scene::partValue(12), 0) << "after twelve they start again";
+}
+
 TEST_F(Columns, ThatAreNotThereAreUnknown) {
   Stage stage(test::writeTestSphere("columns_absent.t4d", 2));
   scene::DrawList list = stage.list(0.5f);
@@ -247,6 +295,11 @@ TEST_F(Refraction, AgreesAndBends) {
     stage.shot.material.tint = 0.3;
     agreed(stage.list(0.5f), stage.source(), "refraction");
   }
+  const render::Image near = agreed(stage.list(0.5f), stage.source(), "near background");
+  stage.shot.material.depth = 3;
+  EXPECT_GT(test::compare(agreed(stage.list(0.5f), stage.source(), "far background"), near).rms, 2);
+  stage.shot.material.depth = 0;
+  agreed(stage.list(0.5f), stage.source(), "no depth");
   stage.shot.view.ortho_height = 16;
   agreed(stage.list(0.5f), stage.source(), "orthographic");
   stage.shot.view.ortho_height.reset();

@@ -67,6 +67,28 @@ void flipByte(const std::string& path, std::uint64_t offset) {
   bytes.put(static_cast<char>(old ^ 1));
 }
 
+// A budget that shrinks is kept from the next frame on; one that grows is used.
+TEST(Pager, ABudgetMayChangeWhilePagesAreHeld) {
+  const dyntri::File file = openFile(test::writeTestSphere("pager_change.t4d", 9));
+  const std::uint64_t page = largestPage(file);
+  Pager pager(file, {4 * page, 1, 1});
+  EXPECT_EQ(pager.budget(), 4 * page);
+  frame(pager, {0}, {1, 2, 3});
+  settle(pager, 4 * file.geometryEntries()[0].bytes);
+  EXPECT_GT(pager.totals().held, 2 * page);
+  pager.setBudget(2 * page);
+  for (std::size_t k = 4; k < 8; ++k) {
+    frame(pager, {k}, {k + 1 < 8 ? k + 1 : 0});
+    EXPECT_TRUE(sameAsFile(file, pager, k));
+    EXPECT_LE(pager.totals().held, 2 * page) << k;
+  }
+  pager.setBudget(8 * page);
+  const std::uint64_t before = pager.totals().read;
+  frame(pager, {0}, {1, 2, 3});
+  settle(pager, before + 3 * file.geometryEntries()[0].bytes);
+  EXPECT_GT(pager.totals().held, 2 * page);
+}
+
 TEST(Pager, ReadsOnlyWhatIsWanted) {
   const dyntri::File file = openFile(test::writeTestSphere("pager_lazy.t4d", 5));
   Pager pager(file, {});

@@ -10,9 +10,12 @@ namespace {
 
 using namespace tet4d;
 
+void copy(const std::string& made, const std::string& path) {
+  std::filesystem::copy_file(made, path, std::filesystem::copy_options::overwrite_existing);
+}
+
 void write(const std::string& path, const std::vector<test::Page>& pages, const test::FileSpec& spec) {
-  std::filesystem::copy_file(test::writeFile("made.t4d", pages, spec), path,
-                             std::filesystem::copy_options::overwrite_existing);
+  copy(test::writeFile("made.t4d", pages, spec), path);
 }
 
 // Two tetrahedra's worth of nothing: a hypermesh with an empty slab, to be refused by the player.
@@ -47,6 +50,8 @@ int main(int, char** argv) {
   // Frames at 10.0, 10.5 and 12.0 seconds.
   write(directory + "/sphere.t4d", {test::sweep(ball, motion, 0, 1), test::sweep(ball, motion, 1, 2)},
         {{}, {10, 10.5, 12}, paged::Codec::kRaw});
+  copy(test::writeColumnSphere("made.t4d", 4), directory + "/columns.t4d");
+  copy(test::writeParts("made.t4d"), directory + "/parts.t4d");
   write(directory + "/empty.t4d", {}, {{}, {0, 1}, paged::Codec::kRaw});
   // Forty pages, the same compressed if this build can; the first ten of them with one damaged.
   std::vector<test::Page> many;

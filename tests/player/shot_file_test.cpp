@@ -39,6 +39,10 @@ void expectSame(const Shot& a, const Shot& b) {
   EXPECT_EQ(a.material.back_color, b.material.back_color);
   EXPECT_EQ(a.material.specular, b.material.specular);
   EXPECT_EQ(a.material.shininess, b.material.shininess);
+  EXPECT_EQ(a.material.refraction, b.material.refraction);
+  EXPECT_EQ(a.material.tint, b.material.tint);
+  EXPECT_EQ(a.material.depth, b.material.depth);
+  EXPECT_EQ(a.background.checker, b.background.checker);
   EXPECT_EQ(a.background.top, b.background.top);
   EXPECT_EQ(a.background.bottom, b.background.bottom);
   EXPECT_EQ(a.background.room, b.background.room);
@@ -56,6 +60,10 @@ TEST(ShotFile, WrittenAndReadBackIsTheSameBitForBit) {
   shot.view.ortho_height = 10.0 / 3;
   shot.lights.clear();
   shot.background.room.reset();
+  shot.background.checker = 12;
+  shot.material.refraction = 4.0 / 3;
+  shot.material.tint = 0.1;
+  shot.material.depth = 1.7;
   expectSame(parsed(formatShot(shot)), shot);
 }
 
@@ -101,6 +109,7 @@ TEST(ShotFile, FaultsNameTheKeyAndTheExpectation) {
       {R"({"lights": [3]})", "lights[0]", "object"},
       {R"({"lights": [{},{},{},{},{},{},{},{},{}]})", "lights", "at most 8"},
       {R"({"material": {"color": [0, 0, 1.5]}})", "material.color", "between 0 and 1"},
+      {R"({"material": {"depth": 5}})", "material.depth", "between 0 and 4"},
       {R"({"material": {"shinyness": 3}})", "material.shinyness", "\"shininess\""},
       {R"({"background": {"top": 1}})", "background.top", "three numbers"},
       {R"({"background": {"room": true}})", "background.room", "or false"},

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -178,10 +179,21 @@ std::string writeFile(const std::string& name, const std::vector<Page>& pages, c
   dyntri::Header header{};
   header.index_to_world = spec.map;
   header.last_time = static_cast<float>(spec.times.size() - 1);
-  auto writer = dyntri::Writer::create(path, header, spec.times, spec.codec, true);
+  std::vector<Column> columns;
+  for (const TestColumn& column : spec.columns) columns.push_back(column.column);
+  auto writer = dyntri::Writer::create(path, header, spec.times, spec.codec, true, columns, spec.part_isovalues);
   if (!writer.ok()) throw std::runtime_error(writer.fault().what);
-  for (const Page& page : pages) {
-    if (Status s = writer.value().addPage(page.view(), 0, 0); !s.ok()) throw std::runtime_error(s.fault().what);
+  for (std::size_t k = 0; k < pages.size(); ++k) {
+    dyntri::PageView view = pages[k].view();
+    if (k < spec.part_of_page.size()) view.part = spec.part_of_page[k];
+    std::vector<std::vector<float>> rows(spec.columns.size());
+    for (std::size_t c = 0; c < rows.size(); ++c) {
+      for (const Vec4f& v : view.vertices) {
+        for (const float x : spec.columns[c].row(v)) rows[c].push_back(x);
+      }
+    }
+    const std::vector<std::span<const float>> spans(rows.begin(), rows.end());
+    if (Status s = writer.value().addPage(view, 0, 0, spans); !s.ok()) throw std::runtime_error(s.fault().what);
   }
   if (Status s = writer.value().close("{}"); !s.ok()) throw std::runtime_error(s.fault().what);
   return path;
@@ -196,6 +208,42 @@ std::string writeTestSphere(const std::string& name, int frames, const AffineMap
     spec.times.push_back(frame + 1);
   }
   return writeFile(name, pages, spec);
+}
+
+std::string writeColumnSphere(const std::string& name, int frames) {
+  const Surface surface = icosphere(3);
+  std::vector<Page> pages;
+  FileSpec spec{{}, {0}, paged::Codec::kRaw};
+  for (int frame = 0; frame + 1 < frames; ++frame) {
+    pages.push_back(sweep(surface, kTestSphere.motion(), frame, frame + 1));
+    spec.times.push_back(frame + 1);
+  }
+  spec.columns = {{{"speed [m/s]", 1},
+                   [](const Vec4f& v) {
+                     return std::vector{v.t == 0 ? std::numeric_limits<float>::quiet_NaN() : 100 * v.x + 10 * v.t};
+                   }},
+                  {{"velocity", 3},
+                   [](const Vec4f& v) {
+                     return std::vector{v.t, 0.5f * v.t, 0.0f};
+                   }},
+                  {{"normal", 3}, [](const Vec4f& v) {
+                     const auto c = kTestSphere.centreAt(double{v.t});
+                     const double r = kTestSphere.radiusAt(double{v.t});
+                     return std::vector{static_cast<float>((double{v.x} - c[0]) / r),
+                                        static_cast<float>((double{v.y} - c[1]) / r),
+                                        static_cast<float>((double{v.z} - c[2]) / r)};
+                   }}};
+  return writeFile(name, pages, spec);
+}
+
+std::string writeParts(const std::string& name) {
+  const Surface surface = icosphere(2);
+  std::vector<Page> pages;
+  for (int part = 0; part < 3; ++part)
+    pages.push_back(sweep(surface, MovingSphere{{4.0 + 10 * part, 4, 4}, {0.5, 0, 0}, 4, -0.5}.motion(), 0, 1));
+  return writeFile(
+      name, pages,
+      {{}, {0, 1}, paged::Codec::kRaw, {}, {0.1, 0.5, std::numeric_limits<double>::quiet_NaN()}, {0, 1, 2}});
 }
 
 }  // namespace tet4d::test

@@ -44,10 +44,19 @@ struct MovingSphere {
   Motion motion() const;
 };
 
+// A column of a test file: its rows are computed from the vertices.
+struct TestColumn {
+  Column column;
+  std::function<std::vector<float>(const Vec4f&)> row;
+};
+
 struct FileSpec {
   AffineMap map;
   std::vector<double> times;
   paged::Codec codec = paged::Codec::kRaw;
+  std::vector<TestColumn> columns = {};
+  std::vector<double> part_isovalues = {};  // none: the file is one part
+  std::vector<std::uint64_t> part_of_page = {};
 };
 
 // A directory of this process, removed when it ends: tests of one name may run at the same time.
@@ -60,5 +69,11 @@ std::string writeFile(const std::string& name, const std::vector<Page>& pages, c
 // between two frames; 642 vertices a frame.
 inline constexpr MovingSphere kTestSphere{{8, 8, 8}, {1, 0.5, 0}, 4, 0.5};
 std::string writeTestSphere(const std::string& name, int frames, const AffineMap& map = {});
+
+// The same with columns "speed [m/s]" (100 x + 10 t; NaN where t = 0), "velocity" (1, 0.5, 0 times t) and "normal" (the
+// ideal sphere's).
+std::string writeColumnSphere(const std::string& name, int frames);
+// Three spheres side by side, each a part, of isovalues 0.1, 0.5 and none.
+std::string writeParts(const std::string& name);
 
 }  // namespace tet4d::test

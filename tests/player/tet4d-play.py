@@ -1,5 +1,10 @@
 """tet4d-play as its users meet it. The fields of a case: tests/cli/README.md."""
 import json
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from png_pixels import pixels  # noqa: E402
 
 SMALL = ["--offscreen", "--size", "64x48", "--renderer", "cpu", "--samples", "1"]
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -76,6 +81,41 @@ def check_budget(result):
         is_png(result, f"f{k}.png", 63, 47)
 
 
+def rows(path):
+    """Rows of a picture as lists of triples."""
+    data, width, height = pixels(path)
+    return [[tuple(data[3 * (y * width + x):3 * (y * width + x) + 3]) for x in range(width)] for y in range(height)]
+
+
+def check_legend(result):
+    with_it, without = rows(result.directory / "a.png"), rows(result.directory / "b.png")
+    changed = [(x, y) for y in range(240) for x in range(320) if with_it[y][x] != without[y][x]]
+    assert changed, "no legend"
+    assert min(x for x, _ in changed) > 200, "the legend is not at the right"
+    colors = {with_it[y][x] for x, y in changed}
+    assert any(r > 240 and g > 220 and b < 60 for r, g, b in colors), "the map's upper end is not there"
+    assert any(60 < r < 76 and g < 14 and 70 < b < 100 for r, g, b in colors), "the map's lower end is not there"
+
+
+def check_same_legend(result):
+    gl, cpu = rows(result.directory / "a.png"), rows(result.directory / "b.png")
+    legend = [(x, y) for y in range(240) for x in range(240, 320)]
+    worst = max(abs(p - q) for x, y in legend for p, q in zip(gl[y][x], cpu[y][x]))
+    assert worst <= 2, f"the renderers' legends differ by {worst}"
+
+
+def check_parts(result):
+    seen = {}
+    for row in rows(result.directory / "a.png"):
+        for pixel in row:
+            seen[pixel] = seen.get(pixel, 0) + 1
+    for color in [(0x3a, 0x7f, 0xb8), (0xe9, 0xa1, 0x3b), (0x3f, 0x9a, 0x63)]:
+        count = sum(n for pixel, n in seen.items() if max(abs(a - b) for a, b in zip(pixel, color)) <= 2)
+        assert count > 300, f"{color} is {count} times in the picture"
+
+
+BIG = ["--offscreen", "--size", "320x240", "--renderer", "cpu", "--samples", "1", "--at", "1.5f"]
+LEGEND = "tet4d-play {files}/columns.t4d --offscreen --size 320x240 --samples 1 --at 1.5f --color velocity"
 FILM = " --offscreen --size 64x48 --renderer cpu --samples 1 --format y4m"
 JUMPS = " --times 0f:40f:0.5f,40f:0f:-1f,7f,22.5f,39f,1f,15f,0f,40f,3f,27f,11f"
 
@@ -222,6 +262,30 @@ CASES = [
      "shell": "tet4d-play {files}/sphere.t4d --offscreen --size 64x48 --renderer cpu --at 1.5f --memory 4M -o a.png;"
               " tet4d-play {files}/sphere.t4d --offscreen --size 64x48 --renderer cpu --at 1.5f -o b.png",
      "check": check_same},
+    {"name": "--legend draws the map's colours at the right of the picture",
+     "shell": LEGEND + " --renderer cpu --legend -o a.png; " + LEGEND + " --renderer cpu -o b.png", "check": check_legend},
+    {"name": "the legend is the same with both renderers",
+     "shell": LEGEND + " --legend -o a.png; " + LEGEND + " --renderer cpu --legend -o b.png", "check": check_same_legend},
+    {"name": "reversed, logarithmic and unlit pictures are others",
+     "shell": "; ".join(f"{LEGEND.replace('1.5f', '0.7f')} --renderer cpu {words} -o {name}.png" for name, words in [
+         ("a", ""), ("b", "--reverse-map"), ("c", "--scale log"), ("d", "--shading none"), ("e", "--shading file")]),
+     "check": lambda r: len({(r.directory / f"{n}.png").read_bytes() for n in "abcde"}) == 5
+     or (_ for _ in ()).throw(AssertionError("two pictures are the same"))},
+    {"name": "each part has its colour", "run": play("--color-by", "part", "--shading", "none", "--legend", "-o", "a.png",
+                                                     file="{files}/parts.t4d", options=["--offscreen", "--size", "480x320", "--renderer", "cpu",
+                                                                                        "--samples", "1", "--at", "0.5f"]),
+     "check": check_parts},
+    {"name": "what the values are is told", "run": play("--color", "speed [m/s]", "-o", "a.png", file="{files}/columns.t4d", options=BIG),
+     "stderr": ["98 % of its values", "--range LO:HI"]},
+    {"name": "a column that is not there", "run": play("--color", "sped [m/s]", "-o", "a.png", file="{files}/columns.t4d", options=BIG), "exit": 2,
+     "stderr": ["did you mean speed [m/s]"]},
+    {"name": "a legend of nothing", "run": play("--legend", "-o", "f%d.png"), "exit": 2, "stderr": ["--legend", "--color NAME"]},
+    {"name": "parts and a column", "run": play("--color-by", "part", "--color", "velocity", "-o", "a.png", file="{files}/columns.t4d", options=BIG),
+     "exit": 2, "stderr": ["--color-by part", "--color"]},
+    {"name": "a logarithmic range from zero", "run": play("--color", "velocity", "--scale", "log", "--range", "0:1", "-o", "a.png",
+                                                          file="{files}/columns.t4d", options=BIG), "exit": 2, "stderr": ["--scale log", "above 0"]},
+    {"name": "the size of panels that are not there", "run": play("--ui-scale", "2", "-o", "f%d.png"), "exit": 2, "stderr": ["--ui-scale", "--panels"]},
+    {"name": "no file", "run": ["tet4d-play", "--offscreen", "-o", "f.png"], "exit": 2, "stderr": ["no file is named", "FILE.t4d"]},
     *[{"name": f"{option} {value}", "run": play(option, value, "-o", "f%d.png"), "exit": 2, "stderr": [option.strip("-")],
        "absent": ["f0.png"]} for option, value in [("--orbit", "nan"), ("--orbit", "inf"), ("--fps", "nan"), ("--fps", "0"),
                                                    ("--fps", "inf")]],

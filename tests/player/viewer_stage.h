@@ -43,7 +43,7 @@ class ViewerStage {
   int rest(int most = 20) {
     int frames = 0;
     while (frames < most && viewer_->frame(0.05).wait_s < 0.2) {
-      const bool waits = viewer_->state().stats.pages_waiting > 0;
+      const bool waits = viewer_->state().stats.pages_waiting > 0 || viewer_->files().isScanning();
       if (waits) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       frames += waits ? 0 : 1;
     }

@@ -38,8 +38,9 @@ std::string fingerprint(Viewer& viewer) {
   std::ostringstream out;
   const Timeline& t = s.timeline;
   out << t.time() << ' ' << t.playing() << t.backward() << int(t.loop()) << ' ' << t.speed() << ' ' << t.begin() << ' '
-      << t.end() << ' ' << s.smooth << s.panels << s.help << s.quit << ' ' << s.messages.size()
+      << t.end() << ' ' << s.smooth << s.legend << s.panels << s.help << s.quit << ' ' << s.messages.size()
       << (viewer.recorder() != nullptr) << scene::formatShot(viewer.shot());
+  for (const auto& file : viewer.files().all()) out << (file != nullptr ? file->coloring.lit : false);
   return out.str();
 }
 
@@ -157,6 +158,7 @@ TEST(Viewer, TheWheelGoesNearerAboutTheCursor) {
 TEST(Viewer, QuestionMarkShowsTheKeys) {
   test::ViewerStage stage(small());
   stage.open(sphere("viewer_help.t4d"));
+  stage.key(Key::kEscape);  // the hint for newcomers goes
   const render::Image before = stage.screenshot();
   stage.type(U'?');
   EXPECT_TRUE(stage->state().help);

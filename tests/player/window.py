@@ -1,44 +1,16 @@
 """tet4d-play with its window, under Xvfb. The fields of a case: tests/cli/README.md."""
-import struct
-import zlib
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+from png_pixels import pixels  # noqa: E402
 
 # Programs' names are functions of the shell in a case, and xvfb-run and env start files: PLAY is the file's name.
 PLAY = """$(declare -f tet4d-play | grep -o "/[^']*tet4d-play")"""
 XVFB = "xvfb-run -a -s '-screen 0 1400x900x24' "
-
-
-def pixels(path):
-    """The channels of an 8-bit RGB picture, row by row; its width and height."""
-    data, at, packed = path.read_bytes(), 8, b""
-    while at < len(data):
-        (length,), kind = struct.unpack(">I", data[at:at + 4]), data[at + 4:at + 8]
-        body = data[at + 8:at + 8 + length]
-        if kind == b"IHDR":
-            width, height, depth, color = struct.unpack(">IIBB", body[:10])
-            assert (depth, color) == (8, 2), (depth, color)
-        packed += body if kind == b"IDAT" else b""
-        at += 12 + length
-    raw, stride, out = zlib.decompress(packed), 3 * width, bytearray()
-    before = bytearray(stride)
-    for y in range(height):
-        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for x in range(stride):
-            a = line[x - 3] if x >= 3 else 0
-            b = before[x]
-            c = before[x - 3] if x >= 3 else 0
-            if kind == 1:
-                line[x] = (line[x] + a) & 255
-            elif kind == 2:
-                line[x] = (line[x] + b) & 255
-            elif kind == 3:
-                line[x] = (line[x] + (a + b) // 2) & 255
-            elif kind == 4:
-                p = a + b - c
-                nearest = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
-                line[x] = (line[x] + nearest) & 255
-        out += line
-        before = line
-    return bytes(out), width, height
+# A display of 192 dots an inch; what follows stands within double quotes.
+DENSE = f"xvfb-run -a -s '-screen 0 1600x1000x24 -noreset' sh -c \"/usr/bin/python3 {HERE}/set_dpi.py 192 && exec "
 
 
 def alike(result, one, two, most_rms):
@@ -58,6 +30,7 @@ def check_bare(result):
 
 
 SPHERE = "{files}/sphere.t4d"
+COLUMNS = "{files}/columns.t4d"
 SIZE = " --size 700x400 --at 1.5f "
 
 CASES = [
@@ -74,8 +47,24 @@ CASES = [
     {"name": "a key quits", "timeout": 240, "shell": XVFB + f"{PLAY} {SPHERE} --size 500x300 --type q"},
     {"name": "the first interrupt closes it", "timeout": 240, "exit": 1, "stderr": ["interrupted"],
      "shell": XVFB + f"timeout --preserve-status -s TERM 8 {PLAY} {SPHERE} --size 500x300"},
-    {"name": "what a window does not know is refused", "run": ["tet4d-play", SPHERE, "--color", "speed"], "exit": 2,
-     "stderr": ["--color", "--offscreen"]},
+    {"name": "what a window does not know is refused", "run": ["tet4d-play", SPHERE, "--orbit", "90"], "exit": 2,
+     "stderr": ["--orbit", "--offscreen"]},
+    {"name": "a column that is not there is refused before it opens", "run": ["tet4d-play", SPHERE, "--color", "speed"], "exit": 2,
+     "stderr": ["has no column"]},
+    {"name": "it opens with the colours asked for, and their legend", "timeout": 240,
+     "shell": XVFB + f"{PLAY} {COLUMNS}{SIZE}--color velocity:0 --map magma --quit-after 30 --screenshot window.png;"
+                     f" tet4d-play {COLUMNS}{SIZE}--color velocity:0 --map magma --offscreen --panels -o offscreen.png", "check": check_window},
+    {"name": "on a dense display panels are as large as --ui-scale 2 makes them", "timeout": 240,
+     "shell": DENSE + f"{PLAY} {SPHERE}{SIZE}--quit-after 8 --screenshot window.png\";"
+              f" tet4d-play {SPHERE} --size 1400x800 --at 1.5f --ui-scale 2 --offscreen --panels -o offscreen.png", "check": check_window},
+    {"name": "unless a scale is given", "timeout": 240,
+     "shell": DENSE + f"{PLAY} {SPHERE}{SIZE}--ui-scale 1 --quit-after 8 --screenshot window.png\";"
+              f" tet4d-play {SPHERE}{SIZE}--ui-scale 1 --offscreen --panels -o offscreen.png", "check": check_window},
+    {"name": "a scale out of reason", "run": ["tet4d-play", SPHERE, "--ui-scale", "20"], "exit": 2, "stderr": ["--ui-scale", "0.5 and 8"]},
+    {"name": "an empty window says what to do", "timeout": 240,
+     "shell": XVFB + f"{PLAY} --size 700x400 --quit-after 5 --screenshot window.png;"
+                     " tet4d-play --size 700x400 --offscreen --panels -o offscreen.png", "check": check_window},
+    {"name": "one pixel", "timeout": 240, "shell": XVFB + f"{PLAY} {SPHERE} --size 1x1 --type ' ' --quit-after 4"},
     {"name": "--panels without --offscreen", "run": ["tet4d-play", SPHERE, "--panels", "-o", "a.png"], "exit": 2,
      "stderr": ["--panels", "--offscreen"], "absent": ["a.png"]},
     {"name": "no display",

@@ -4,8 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <limits>
-#include <span>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -63,81 +62,89 @@ float numberOf(std::string_view text) {
   return number;
 }
 
-// Where a column's finite values lie: all of them, and without a hundredth at either end, for a few odd ones must not
-// take all colours.
-struct ValueSpread {
-  float low = 0, high = 1, least = 0, most = 1;
-};
-
-// Of every value in small files, of evenly taken ones in large ones. O(the column), memory of a page of it.
-ValueSpread spreadOf(const std::string& name, const dyntri::File& file, const scene::DrawColumn& column) {
-  constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 20;
-  const std::uint64_t stride = 1 + file.header().vertices / kMostSamples;
-  std::vector<float> samples;
-  float least = std::numeric_limits<float>::infinity(), most = -least;
-  for (std::size_t k = 0; k < file.geometryPages(); ++k) {
-    const paged::PageBytes page = unwrap(file.loadColumn(column.column, k));
-    std::vector<float> rows(file.geometryEntry(k).counts[0] * column.components);
-    if (page.bytes().size() < rows.size() * sizeof(float))
-      throw Error(FaultCode::kBadInput, file.reader().path(), "page " + std::to_string(k),
-                  "has too few values of " + name, "make the file again");
-    if (!rows.empty()) std::memcpy(rows.data(), page.bytes().data(), rows.size() * sizeof(float));
-    scene::extendRange(rows, column, least, most);
-    for (std::uint64_t v = 0; v < file.geometryEntry(k).counts[0]; v += stride) {
-      const float value = scene::columnValue(column, std::span(rows).subspan(v * column.components, column.components));
-      if (std::isfinite(value)) samples.push_back(value);
-    }
-  }
-  if (samples.empty()) return {};
-  const auto rank = [&](double share) {
-    const auto at = samples.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(samples.size() - 1));
-    std::nth_element(samples.begin(), at, samples.end());
-    return *at;
-  };
-  return {rank(0.01), rank(0.99), least, most};
+// Both ends of --range.
+scene::ColorRange rangeOf(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const float low = numberOf(std::string_view(text).substr(0, colon));
+  const float high =
+      numberOf(colon == std::string::npos ? std::string_view{} : std::string_view(text).substr(colon + 1));
+  return {std::min(low, high), std::max(low, high)};
 }
 
-void setRange(cli::Session& session, const Coloring& coloring, const dyntri::File& file, scene::DrawColumn& column) {
-  if (!coloring.range.empty()) {
-    const std::size_t colon = coloring.range.find(':');
-    column.low = numberOf(std::string_view(coloring.range).substr(0, colon));
-    column.high =
-        numberOf(colon == std::string::npos ? std::string_view{} : std::string_view(coloring.range).substr(colon + 1));
-    if (column.low > column.high) std::swap(column.low, column.high);
-    return;
+void checkCombination(const ColoringOptions& options) {
+  if (options.by == "part" && !options.color.empty())
+    throw Error(FaultCode::kUsage, "", "--color-by part", "stands beside --color", "give one of the two");
+  if (!options.color.empty()) return;
+  for (const auto& [name, is_given] : {std::pair{"--range", !options.range.empty()},
+                                       {"--scale log", options.scale == "log"},
+                                       {"--reverse-map", options.reverse_map}}) {
+    if (is_given) throw Error(FaultCode::kUsage, "", name, "colours nothing without --color", "give --color NAME too");
   }
-  const ValueSpread spread = spreadOf(coloring.color, file, column);
-  column.low = spread.low, column.high = spread.high;
-  session.note(coloring.color + " from " + std::to_string(column.low) + " to " + std::to_string(column.high) +
-               ": 98 % of its values; all lie in " + std::to_string(spread.least) + " to " +
-               std::to_string(spread.most) + " (--range LO:HI)");
+  if (options.legend && options.by != "part")
+    throw Error(FaultCode::kUsage, "", "--legend", "explains no colours: there are only those of the material",
+                "give --color NAME or --color-by part too");
+}
+
+void setRange(const ColoringOptions& options, scene::Coloring& coloring) {
+  coloring.logarithmic = options.scale == "log";
+  if (options.range.empty()) return;
+  const scene::ColorRange range = rangeOf(options.range);
+  coloring.range = scene::RangeOf::kGiven;
+  coloring.low = range.low, coloring.high = range.high;
+  if (coloring.logarithmic && !(coloring.low > 0))
+    throw Error(FaultCode::kUsage, "", "--scale log", "expected a --range above 0, found " + options.range,
+                "give --range LO:HI with LO above 0, or leave --range out");
 }
 
 }  // namespace
 
-void applyColoring(cli::Session& session, const Coloring& coloring, const std::string& path, scene::SceneFile& file) {
-  if (coloring.shading == "file") {
-    const std::size_t normal = columnAt("normal", path, *file.file);
-    if (file.file->columns()[normal].components != 3)
+scene::Coloring coloringOf(const ColoringOptions& options, const std::string& path, const dyntri::File& file) {
+  checkCombination(options);
+  scene::Coloring coloring;
+  coloring.map = findColorMap(options.map);
+  coloring.reversed = options.reverse_map;
+  coloring.lit = options.shading != "none";
+  if (options.shading == "file") {
+    const std::size_t normal = columnAt("normal", path, file);
+    if (file.columns()[normal].components != 3)
       throw Error(FaultCode::kUsage, path, "normal", "has not three components", "give --shading slice");
-    file.normal_column = normal;
+    coloring.normal_column = normal;
   }
-  if (coloring.color.empty()) {
-    if (coloring.range.empty()) return;
-    throw Error(FaultCode::kUsage, "", "--range", "colours nothing without --color", "give --color NAME too");
-  }
-  const std::vector<std::string> names = namesOf(*file.file);
+  if (options.by == "part") coloring.by = scene::ColorBy::kPart;
+  if (options.color.empty()) return coloring;
+  const std::vector<std::string> names = namesOf(file);
   // A name may hold a colon itself: the whole word first.
-  const bool whole = std::find(names.begin(), names.end(), coloring.color) != names.end();
-  const std::size_t colon = whole ? std::string::npos : coloring.color.rfind(':');
-  const std::string name = coloring.color.substr(0, colon);
-  const std::size_t number = columnAt(name, path, *file.file);
-  const std::uint32_t components = file.file->columns()[number].components;
-  const int component =
-      componentOf(colon == std::string::npos ? "" : coloring.color.substr(colon + 1), name, components);
-  scene::DrawColumn column = scene::makeDrawColumn(number, components, component, 0, 1, *findColorMap(coloring.map));
-  setRange(session, coloring, *file.file, column);
-  file.column = column;
+  const bool whole = std::find(names.begin(), names.end(), options.color) != names.end();
+  const std::size_t colon = whole ? std::string::npos : options.color.rfind(':');
+  const std::string name = options.color.substr(0, colon);
+  coloring.by = scene::ColorBy::kColumn;
+  coloring.column = columnAt(name, path, file);
+  coloring.component = componentOf(colon == std::string::npos ? "" : options.color.substr(colon + 1), name,
+                                   file.columns()[coloring.column].components);
+  setRange(options, coloring);
+  return coloring;
+}
+
+void applyColoring(cli::Session& session, const ColoringOptions& options, const std::string& path,
+                   scene::SceneFile& file) {
+  const scene::Coloring coloring = coloringOf(options, path, *file.file);
+  std::optional<scene::ColumnSpread> spread;
+  if (coloring.needsSpread()) {
+    session.progress().phase("values", file.file->geometryPages());
+    spread =
+        unwrap(scene::spreadOf(*file.file, coloring.column, coloring.component, [&](std::size_t done, std::size_t) {
+          session.progress().step(done);  // throws after an interrupt
+          return true;
+        }));
+    if (coloring.logarithmic && spread->least_above_zero == 0)
+      throw Error(FaultCode::kUsage, path, "--scale log", "no value of " + options.color + " lies above 0",
+                  "give --scale linear");
+  }
+  scene::apply(coloring, spread ? &*spread : nullptr, file);
+  if (!spread || coloring.range == scene::RangeOf::kGiven) return;
+  session.note(options.color + " from " + std::to_string(file.column->low) + " to " +
+               std::to_string(file.column->high) + ": 98 % of its values; all lie in " + std::to_string(spread->least) +
+               " to " + std::to_string(spread->most) + " (--range LO:HI)");
 }
 
 }  // namespace tet4d::play

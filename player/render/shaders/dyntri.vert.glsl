@@ -71,7 +71,8 @@ uniform mat4 relative_to_clip;
 
 uniform bool has_file_normals;
 uniform samplerBuffer file_normals;  // x, y, z of vertex v at 3 v, world
-uniform int components;              // of the column, 0: no column, or its page is not there
+uniform int components;              // of the column, 0: no column, or its page is not there; -1: page_value
+uniform float page_value;            // of all of the page
 uniform int component;               // -1: the length
 uniform samplerBuffer column;        // of vertex v from v * components
 
@@ -93,6 +94,7 @@ vec3 fileNormal(Crossing c) {
 // As valueOf() in player/render/slice_columns.h.
 float columnValue(Crossing c) {
   if (components == 0) return uintBitsToFloat(0x7fc00000u);  // NaN
+  if (components < 0) return page_value;
   float squares = 0.0;
   for (int i = 0; i < components; ++i) {
     float x = between(texelFetch(column, components * c.ends.x + i).x, texelFetch(column, components * c.ends.y + i).x,

@@ -11,7 +11,8 @@ uniform vec3 light_color[kMaxLights];
 uniform vec3 ambient, front_color, back_color;
 uniform float specular, shininess;
 
-uniform bool by_column;
+uniform bool lit;
+uniform bool by_column, logarithmic;
 uniform float low, high;
 uniform vec3 below, above, unknown;
 uniform sampler2D color_table;  // linear light
@@ -37,8 +38,10 @@ vec3 columnColor() {
   if (isnan(value)) return unknown;
   if (value < low) return below;
   if (value > high) return above;
-  float span = 0.5 * high - 0.5 * low;
-  float s = span > 0.0 ? (0.5 * value - 0.5 * low) / span : 0.5;
+  float from = 0.5 * low, to = 0.5 * high, here = 0.5 * value;
+  if (logarithmic) { from = log2(low); to = log2(high); here = log2(value); }
+  float span = to - from;
+  float s = span > 0.0 ? (here - from) / span : 0.5;
   float at = clamp(s, 0.0, 1.0) * float(kMapEntries - 1);
   int entry = min(int(at), kMapEntries - 2);
   vec3 a = texelFetch(color_table, ivec2(entry, 0), 0).rgb;
@@ -74,6 +77,10 @@ void main() {
   float size = length(normal);
   vec3 n = size > 0.0 ? (gl_FrontFacing ? normal : -normal) / size : viewer;
   vec3 base = by_column ? columnColor() : gl_FrontFacing ? front_color : back_color;
+  if (!lit && refraction == 0.0) {
+    color = vec4(linearToSrgb(clamp(base, 0.0, 1.0)), 1.0);
+    return;
+  }
   float opaque = refraction > 0.0 ? 0.0 : 1.0;
   vec3 sum = refraction > 0.0 ? transparent(viewer, n, base) : ambient * base;
   for (int i = 0; i < light_count; ++i) {
