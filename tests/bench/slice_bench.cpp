@@ -1,5 +1,6 @@
 // Slices of a file of dynamic triangles on one thread, warm, in memory; beside the bands an interval tree over the same
-// lifespans, and the cache misses a triangle of vertex caches of 16, 32 and 256 entries. Prints one JSON line. usage: slice_bench X.t4d [SLICES]
+// lifespans, and the cache misses a triangle of vertex caches of 16, 32 and 256 entries. Prints one JSON line. usage:
+// slice_bench X.t4d [SLICES]
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -89,7 +90,8 @@ class IntervalTree {
   std::uint64_t nodes_ = 0;
 };
 
-// A cache of shaded vertices, first in first out: of the page's living triangles as they are drawn, how many corners miss.
+// A cache of shaded vertices, first in first out: of the page's living triangles as they are drawn, how many corners
+// miss.
 std::uint64_t cacheMisses(const dyntri::PageView& page, std::span<const scene::DrawItem> items, float t, float last_t,
                           std::uint64_t entries) {
   std::vector<std::uint64_t> since(page.edges.size(), 0);  // misses so far when the edge came in, 0: never
@@ -191,9 +193,10 @@ int main(int argc, char** argv) {
       "\"processed_per_drawn\": %.4f, \"active_per_all\": %.4f, \"tree_ms\": %.3f, \"tree_bytes_per_triangle\": %.2f, "
       "\"tree_drawn_per_drawn\": %.4f}\n",
       static_cast<unsigned long long>(file.header().tets), slices, median(sums.slice_ms), median(sums.choose_ms),
-      each(sums.triangles), each(sums.vertices), each(sums.misses[0]) / each(sums.drawn), each(sums.misses[1]) / each(sums.drawn),
-      each(sums.misses[2]) / each(sums.drawn), each(sums.processed) / each(sums.drawn),
-      each(sums.drawn) / each(sums.all), sums.tree_ms.empty() ? 0 : median(sums.tree_ms),
-      each(sums.tree_bytes) / each(sums.all), each(sums.tree_drawn) / each(sums.drawn));
+      each(sums.triangles), each(sums.vertices), each(sums.misses[0]) / each(sums.drawn),
+      each(sums.misses[1]) / each(sums.drawn), each(sums.misses[2]) / each(sums.drawn),
+      each(sums.processed) / each(sums.drawn), each(sums.drawn) / each(sums.all),
+      sums.tree_ms.empty() ? 0 : median(sums.tree_ms), each(sums.tree_bytes) / each(sums.all),
+      each(sums.tree_drawn) / each(sums.drawn));
   return 0;
 }
