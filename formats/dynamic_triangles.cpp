@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "formats/mesh_sections.h"
 #include "formats/page_layout.h"
 
 namespace tet4d::dyntri {
@@ -191,57 +192,23 @@ Result<File> File::open(const std::string& path) {
   // A player keeps it open for long: only its pages stay in the mapping.
   if (Status status = file.reader_->ownSections(kOwned); !status.ok()) return status.fault();
   const container::Reader& reader = *file.reader_;
-  auto header = reader.single<Header>(kHeader);
-  if (!header.ok()) return header.fault();
-  file.header_ = header.value();
-  auto times = reader.items<double>(kTimes);
-  if (!times.ok()) return times.fault();
-  file.times_ = times.value();
-  if (reader.find(kColumns) != nullptr) {
-    auto columns = reader.items<ColumnEntry>(kColumns);
-    if (!columns.ok()) return columns.fault();
-    file.columns_ = columns.value();
-    if (Status s = reader.verifySection(*reader.find(kColumns)); !s.ok()) return s.fault();
-  }
-  if (reader.find(kParts) != nullptr) {
-    auto parts = reader.items<PartEntry>(kParts);
-    if (!parts.ok()) return parts.fault();
-    file.parts_ = parts.value();
-    if (Status s = reader.verifySection(*reader.find(kParts)); !s.ok()) return s.fault();
-  }
-  for (const std::uint32_t kind : {kHeader, kTimes}) {
-    if (Status status = reader.verifySection(*reader.find(kind)); !status.ok()) return status.fault();
-  }
-  if (const char* what = checkHeader(*file.header_)) return reader.fault(kHeader, what);
-  if (Status s = page_layout::checkTimes(file.times_, file.header_->frames, path); !s.ok()) return s.fault();
-  if (Status s = file.checkTable(); !s.ok()) return s.fault();
-  return file;
-}
-
-// Columns, parts and pages as the header says they are.
-Status File::checkTable() {
-  const container::Reader& reader = *reader_;
-  if (columns_.size() != header_->columns) {
-    return reader.fault(kColumns, "has " + std::to_string(columns_.size()) + " columns, the header says " +
-                                      std::to_string(header_->columns));
-  }
-  if (const char* what = checkColumns(columns_)) return reader.fault(kColumns, what);
-  if (parts_.size() != header_->parts) {
-    return reader.fault(
-        kParts, "has " + std::to_string(parts_.size()) + " parts, the header says " + std::to_string(header_->parts));
-  }
-  if (const char* what = checkParts(parts_)) return reader.fault(kParts, what);
-  if (reader.header().payload_version < 2 && (header_->columns != 0 || header_->parts != 0)) {
+  auto sections = mesh_sections::open<Header>(reader, {kHeader, kTimes, kColumns, kParts}, checkHeader);
+  if (!sections.ok()) return sections.fault();
+  file.header_ = sections.value().header;
+  file.times_ = sections.value().times;
+  file.columns_ = sections.value().columns;
+  file.parts_ = sections.value().parts;
+  if (reader.header().payload_version < 2 && (file.header_->columns != 0 || file.header_->parts != 0)) {
     return reader.fault(kHeader, "has columns or parts, which version 1 does not know");
   }
   auto pages = paged::Pages::open(reader);
   if (!pages.ok()) return pages.fault();
-  pages_ = pages.value();
-  if (Status s = checkPages(reader, *header_, pages_.entries(), columns_); !s.ok()) return s;
-  for (std::size_t i = 0; !columns_.empty() && i < pages_.size(); i += tablePage(1)) {
-    geometry_.push_back(pages_.entries()[i]);
-  }
-  return {};
+  file.pages_ = pages.value();
+  const auto entries = file.pages_.entries();
+  if (Status s = checkPages(reader, *file.header_, entries, file.columns_); !s.ok()) return s.fault();
+  for (std::size_t i = 0; !file.columns_.empty() && i < entries.size(); i += file.tablePage(1))
+    file.geometry_.push_back(entries[i]);
+  return file;
 }
 
 Status File::verify() const {
@@ -268,8 +235,9 @@ Status File::verify() const {
       auto column = loadColumn(c, k);
       if (!column.ok()) return column.fault();
       const std::uint64_t used = geometryEntry(k).counts[0] * columns_[c].components * sizeof(float);
-      if (!page_layout::allZero(column.value().bytes().subspan(used)))
-        return bad(tablePage(k) + 1 + c, "padding is not zero");
+      const Status zero =
+          mesh_sections::checkColumnPadding(*reader_, column.value().bytes(), used, tablePage(k) + 1 + c);
+      if (!zero.ok()) return zero;
     }
   }
   if (const Bounds4f box = page_layout::stored(all); box.min != header_->bounds.min || box.max != header_->bounds.max) {

@@ -154,7 +154,6 @@ class File {
   Status verify() const;
 
  private:
-  Status checkTable();
   std::unique_ptr<container::Reader> reader_;
   const Header* header_ = nullptr;
   std::span<const double> times_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "formats/mesh_sections.h"
 #include "formats/page_layout.h"
 
 namespace tet4d::hypermesh {
@@ -163,39 +164,12 @@ Result<File> File::open(const std::string& path) {
   File file;
   file.reader_ = std::make_unique<container::Reader>(std::move(opened).value());
   const container::Reader& reader = *file.reader_;
-  auto header = reader.single<MeshHeader>(kHeader);
-  if (!header.ok()) return header.fault();
-  file.header_ = header.value();
-  auto times = reader.items<double>(kTimes);
-  if (!times.ok()) return times.fault();
-  file.times_ = times.value();
-  if (reader.find(kColumns) != nullptr) {
-    auto columns = reader.items<ColumnEntry>(kColumns);
-    if (!columns.ok()) return columns.fault();
-    file.columns_ = columns.value();
-    if (Status s = reader.verifySection(*reader.find(kColumns)); !s.ok()) return s.fault();
-  }
-  if (reader.find(kParts) != nullptr) {
-    auto parts = reader.items<PartEntry>(kParts);
-    if (!parts.ok()) return parts.fault();
-    file.parts_ = parts.value();
-    if (Status s = reader.verifySection(*reader.find(kParts)); !s.ok()) return s.fault();
-  }
-  for (const std::uint32_t kind : {kHeader, kTimes}) {
-    if (Status status = reader.verifySection(*reader.find(kind)); !status.ok()) return status.fault();
-  }
-  if (const char* what = checkHeader(*file.header_)) return reader.fault(kHeader, what);
-  if (Status s = page_layout::checkTimes(file.times_, file.header_->frames, path); !s.ok()) return s.fault();
-  if (file.columns_.size() != file.header_->columns) {
-    return reader.fault(kColumns, "has " + std::to_string(file.columns_.size()) + " columns, the header says " +
-                                      std::to_string(file.header_->columns));
-  }
-  if (const char* what = checkColumns(file.columns_)) return reader.fault(kColumns, what);
-  if (file.parts_.size() != file.header_->parts) {
-    return reader.fault(kParts, "has " + std::to_string(file.parts_.size()) + " parts, the header says " +
-                                    std::to_string(file.header_->parts));
-  }
-  if (const char* what = checkParts(file.parts_)) return reader.fault(kParts, what);
+  auto sections = mesh_sections::open<MeshHeader>(reader, {kHeader, kTimes, kColumns, kParts}, checkHeader);
+  if (!sections.ok()) return sections.fault();
+  file.header_ = sections.value().header;
+  file.times_ = sections.value().times;
+  file.columns_ = sections.value().columns;
+  file.parts_ = sections.value().parts;
   if (file.header_->parts != 0 && reader.header().payload_version < 2) {
     return reader.fault(kParts, "has parts, which version 1 does not know");
   }
@@ -317,10 +291,8 @@ Status File::verify() const {
     if (!page.ok()) return page.fault();
     const auto& entry = pages_.entries()[i - i % stride()];
     const std::uint64_t used = entry.counts[1] * columns_[i % stride() - 1].components * sizeof(float);
-    if (!page_layout::allZero(page.value().bytes().subspan(used))) {
-      return Fault{FaultCode::kBadInput, reader_->path(), "page " + std::to_string(i), "padding is not zero",
-                   "write the file again"};
-    }
+    const Status zero = mesh_sections::checkColumnPadding(*reader_, page.value().bytes(), used, i);
+    if (!zero.ok()) return zero;
   }
   if (const Bounds4f box = page_layout::stored(all); box.min != header_->bounds.min || box.max != header_->bounds.max) {
     return reader_->fault(kHeader, "its bounds are not the box of the vertices");

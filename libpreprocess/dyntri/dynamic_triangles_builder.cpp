@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "formats/core/tet_slice.h"
+#include "libpreprocess/dyntri/cache_order.h"
 #include "libpreprocess/dyntri/edge_numbers.h"
 #include "libpreprocess/dyntri/lifespan_bands.h"
 #include "libpreprocess/error.h"
@@ -58,9 +59,10 @@ void appendTriangles(const hypermesh::Tet& tet, std::span<const Vec4f> positions
   }
 }
 
-// Puts triangles and lifespans into the page in the order of their buckets, those of a bucket as they came.
-void sortByBucket(const RawTriangles& raw, std::span<const std::uint32_t> bucket, std::size_t buckets,
-                  BuiltPage& page) {
+// Puts triangles and lifespans into the page in the order of their buckets, those of a bucket as they came. Returns
+// where each bucket ends.
+std::vector<std::uint64_t> sortByBucket(const RawTriangles& raw, std::span<const std::uint32_t> bucket,
+                                        std::size_t buckets, BuiltPage& page) {
   std::vector<std::uint64_t> place(buckets + 1);
   for (const std::uint32_t b : bucket) ++place[b + 1];
   std::partial_sum(place.begin(), place.end(), place.begin());
@@ -70,6 +72,29 @@ void sortByBucket(const RawTriangles& raw, std::span<const std::uint32_t> bucket
     const std::uint64_t to = place[bucket[i]]++;
     page.lifespans[to] = raw.lives[i];
     page.triangles[to] = raw.triangles[i];
+  }
+  place.resize(buckets);
+  return place;
+}
+
+// Orders the triangles of each bucket for vertex caches.
+void orderBuckets(std::span<const std::uint64_t> ends, std::size_t edges, BuiltPage& page) {
+  CacheOrder cache(edges);
+  std::vector<Triangle> triangles;
+  std::vector<Lifespan> lives;
+  std::size_t first = 0;
+  for (const std::size_t end : ends) {
+    const auto of_bucket = std::span(page.triangles).subspan(first, end - first);
+    const auto lives_of_bucket = std::span(page.lifespans).subspan(first, end - first);
+    first = end;
+    if (of_bucket.size() < 3) continue;  // any order is as good
+    triangles.assign(of_bucket.begin(), of_bucket.end());
+    lives.assign(lives_of_bucket.begin(), lives_of_bucket.end());
+    std::size_t to = 0;
+    for (const std::uint32_t i : cache.order(triangles)) {
+      of_bucket[to] = triangles[i];
+      lives_of_bucket[to++] = lives[i];
+    }
   }
 }
 
@@ -155,6 +180,7 @@ BuiltPage buildPage(std::span<const hypermesh::Tet> tets, std::span<const Vec4f>
   BuiltPage page;
   page.tets = tets.size();
   EdgeNumbers edges(positions.size());
+  std::vector<std::uint64_t> ends;  // of the buckets
   {
     RawTriangles raw;
     const std::uint64_t count = countTriangles(tets, positions);
@@ -165,8 +191,9 @@ BuiltPage buildPage(std::span<const hypermesh::Tet> tets, std::span<const Vec4f>
     page.interval = unionOf(raw.lives);
     BandPlan plan = planBands(raw.lives, page.interval, bands, kBandBytesATet * tets.size());
     page.bands = std::move(plan.bands);
-    sortByBucket(raw, plan.bucket, plan.buckets, page);
+    ends = sortByBucket(raw, plan.bucket, plan.buckets, page);
   }
+  orderBuckets(ends, edges.edges().size(), page);
   numberByUse(edges.edges(), positions, page);
   page.index = indexBands(page.bands, page.lifespans, page.interval);
   return page;
@@ -183,12 +210,14 @@ void BuildStats::add(const BuiltPage& page) {
 }
 
 std::uint64_t boundPageMemory(std::uint64_t tets, std::uint64_t vertices) {
-  // As built and as sorted, with a bucket each; the encoded page and its copy take the place of the former later. Of
-  // edges a tetrahedron has six: the table of their numbers, then those of the page and their new numbers.
-  const std::uint64_t per_triangle = 2 * (sizeof(Lifespan) + sizeof(Triangle)) + 4;
+  // As built and as sorted, with a bucket each, or as sorted and ordered, which takes more; the encoded page and its
+  // copy take the place of the former later. Of edges a tetrahedron has six: the table of their numbers, then their
+  // states while triangles are ordered, or those of the page and their new numbers.
+  const std::uint64_t per_triangle = 2 * (sizeof(Lifespan) + sizeof(Triangle)) + CacheOrder::kBytesATriangle;
   const std::uint64_t edges = 6 * tets;
-  return boundTriangles(tets) * per_triangle + EdgeNumbers::boundMemory(edges, vertices) + edges * (sizeof(Edge) + 4) +
-         vertices * (3 * sizeof(Vec4f) + 3 * 4 + 4) + 3 * kBandBytesATet * tets + kFixedBytes;
+  return boundTriangles(tets) * per_triangle + EdgeNumbers::boundMemory(edges, vertices) +
+         edges * std::max(sizeof(Edge) + 4, CacheOrder::kBytesAnEdge) + vertices * (3 * sizeof(Vec4f) + 3 * 4 + 4) +
+         4 * kBandBytesATet * tets + kFixedBytes;
 }
 
 std::uint64_t boundBuildMemory(const hypermesh::File& mesh, std::size_t pages_in_flight, const BuildOptions& options) {

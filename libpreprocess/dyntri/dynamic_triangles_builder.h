@@ -5,7 +5,8 @@
 // page and numbered by first use in the order the triangles are drawn, vertices by first use in the order of the edges.
 //
 // The triangles of a page are sorted into bands of lifespans about as long (lifespan_bands.h), within a band by the
-// interval of their begin, within an interval as their tetrahedra stand. Columns of the hypermesh follow its vertices.
+// interval of their begin, within an interval for caches of slice vertices (cache_order.h). Columns of the hypermesh
+// follow its vertices.
 //
 // Cost: one pass over the pages; O(n) in a page's triangles; memory of as many pages as there are threads, fewer if the
 // budget says so, at least one. The bytes depend on neither.

@@ -11,13 +11,13 @@
 namespace tet4d::host {
 namespace {
 
-// A sample: CPU: colour 4, depth 4 and id 4 of the surface, the same of the walls. GL: colour 4, depth 4, read back 4,
-// and the walls once more where a surface refracts.
-constexpr std::uint64_t kCpuSampleBytes = 24, kGlSampleBytes = 16;
+// A sample: CPU: colour 4, depth 4 and id 4 of the surface, the same of the walls. GL: colour 4 of this picture and
+// of the next, depth 4, read back 4, and the walls once more where a surface refracts.
+constexpr std::uint64_t kCpuSampleBytes = 24, kGlSampleBytes = 20;
 // A pixel: the averaged picture.
 constexpr std::uint64_t kPictureBytes = 4;
-// A texel of summed normals, and how many a row has.
-constexpr std::uint64_t kTexelBytes = 16, kRowTexels = 4096;
+// A texel of summed normals in the driver, in front of it, and its slice vertex's number; how many a row has.
+constexpr std::uint64_t kTexelBytes = 36, kRowTexels = 4096;
 
 std::uint64_t heldBytes(const paged::PageEntry& entry) {
   const bool is_raw = entry.codec == static_cast<std::uint32_t>(paged::Codec::kRaw);

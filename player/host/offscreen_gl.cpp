@@ -73,11 +73,21 @@ class OffscreenRenderer final : public render::Renderer {
   const char* name() const override { return renderer_->name(); }
   std::uint64_t gpuBytes() const override { return renderer_->gpuBytes(); }
   Result<render::Image> draw(const scene::DrawList& list, std::span<const stream::Residency* const> sources) override {
-    if (!gl_->makeCurrent()) return Fault{FaultCode::kIo, "", "OSMesa", "lost its context", "use --renderer cpu"};
+    if (!gl_->makeCurrent()) return lostContext();
     return renderer_->draw(list, sources);
+  }
+  std::size_t picturesAhead() const override { return renderer_->picturesAhead(); }
+  Status start(const scene::DrawList& list, std::span<const stream::Residency* const> sources) override {
+    return gl_->makeCurrent() ? renderer_->start(list, sources) : lostContext();
+  }
+  Result<render::Image> take() override {
+    if (!gl_->makeCurrent()) return lostContext();
+    return renderer_->take();
   }
 
  private:
+  static Fault lostContext() { return {FaultCode::kIo, "", "OSMesa", "lost its context", "use --renderer cpu"}; }
+
   std::unique_ptr<OffscreenGl> gl_;  // first: destroyed after the renderer
   std::unique_ptr<render::Renderer> renderer_;
 };

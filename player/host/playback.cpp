@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -95,26 +96,31 @@ class Economy {
   double pixels_;
 };
 
+// A picture that the renderer has begun.
+struct Started {
+  FrameCost cost{};
+  scene::Format format;
+};
+
 // One picture: scene says which pages, stream brings them, scene says which triangles, render draws.
-Result<render::Image> drawFrame(const Film& film, std::size_t i, Foresight& foresight, Economy& economy,
-                                std::span<stream::Pager* const> pagers, render::Renderer& renderer, FrameCost& cost) {
+Status startFrame(const Film& film, std::size_t i, Foresight& foresight, Economy& economy,
+                  std::span<stream::Pager* const> pagers, render::Renderer& renderer, Started& started) {
+  FrameCost& cost = started.cost;
+  cost.index = i;
   const Clock::time_point start = Clock::now();
   const Foresight::Picture& picture = foresight.advance(i);
   const double camera_ms = msSince(start);
-  if (Status status = load(film, foresight, picture, pagers); !status.ok()) return status.fault();
+  if (Status status = load(film, foresight, picture, pagers); !status.ok()) return status;
   cost.load_ms = msSince(start) - camera_ms;
   scene::DrawList list = picture.list;
   choose(film, film.times[i], picture, pagers, list);
-  if (Status status = checkTriangles(list, film.triangle_bytes, renderer); !status.ok()) return status.fault();
+  if (Status status = checkTriangles(list, film.triangle_bytes, renderer); !status.ok()) return status;
   cost.choose_ms = msSince(start) - cost.load_ms;
   const std::vector<const stream::Residency*> resident(pagers.begin(), pagers.end());
-  list.format = economy.formatOf(i, static_cast<double>(list.processed()));
-  auto image = renderer.draw(list, resident);
-  if (image.ok() && (list.format.width != film.format.width || list.format.height != film.format.height))
-    image = render::scaleUp(image.value(), film.format.width, film.format.height);
+  list.format = started.format = economy.formatOf(i, static_cast<double>(list.processed()));
+  if (Status status = renderer.start(list, resident); !status.ok()) return status;
   cost.samples = economy.samplesOf(list.format);
   cost.ms = msSince(start);
-  cost.draw_ms = cost.ms - cost.choose_ms - cost.load_ms;
   cost.drawn = list.drawn();
   cost.processed = list.processed();
   cost.absent = list.absent();
@@ -122,6 +128,19 @@ Result<render::Image> drawFrame(const Film& film, std::size_t i, Foresight& fore
     cost.bytes_touched += pager->frameReads().touched;
     cost.prefetched += pager->frameReads().prefetched;
   }
+  return {};
+}
+
+// The picture begun first, at the film's size.
+Result<render::Image> takeFrame(const Film& film, Economy& economy, render::Renderer& renderer, Started& started) {
+  const Clock::time_point start = Clock::now();
+  auto image = renderer.take();
+  if (!image.ok()) return image.fault();
+  if (started.format.width != film.format.width || started.format.height != film.format.height)
+    image = render::scaleUp(image.value(), film.format.width, film.format.height);
+  FrameCost& cost = started.cost;
+  cost.ms += msSince(start);
+  cost.draw_ms = cost.ms - cost.choose_ms - cost.load_ms;
   economy.learn(cost);
   return image;
 }
@@ -146,16 +165,11 @@ Status play(const Film& film, std::span<stream::Pager* const> pagers, render::Re
   Foresight foresight(film);
   Economy economy(film);
   for (std::size_t file = 0; file < pagers.size(); ++file) pagers[file]->useColumns(scene::columnsOf(film.files[file]));
-  Clock::time_point due = Clock::now();
-  for (std::size_t i = 0; i < film.times.size(); ++i) {
-    if (film.arrival == Arrival::kDraw) {
-      std::this_thread::sleep_until(due);
-      due = std::max(due, Clock::now()) +
-            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / film.fps));
-    }
-    FrameCost cost{};
-    cost.index = i;
-    auto image = drawFrame(film, i, foresight, economy, pagers, renderer, cost);
+  // At a pace every picture is wanted as soon as it can be; an exact film has time to draw the next one meanwhile.
+  const std::size_t ahead = film.arrival == Arrival::kWait ? renderer.picturesAhead() : 0;
+  std::deque<Started> started;
+  const auto takeOne = [&]() -> Status {
+    auto image = takeFrame(film, economy, renderer, started.front());
     if (!image.ok()) return image.fault();
     drawLegends(image.value(), film.legends, {0, 0, double{1} * film.format.width, double{1} * film.format.height},
                 legendLine(film.format.width, film.format.height), isDark(film.shot.background));
@@ -164,7 +178,25 @@ Status play(const Film& film, std::span<stream::Pager* const> pagers, render::Re
     }
     if (sheet != nullptr) sheet->add(image.value());
     if (report != nullptr) *report = economy.report();
-    after(cost);
+    after(started.front().cost);
+    started.pop_front();
+    return {};
+  };
+  Clock::time_point due = Clock::now();
+  for (std::size_t i = 0; i < film.times.size(); ++i) {
+    if (film.arrival == Arrival::kDraw) {
+      std::this_thread::sleep_until(due);
+      due = std::max(due, Clock::now()) +
+            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / film.fps));
+    }
+    started.emplace_back();
+    if (Status status = startFrame(film, i, foresight, economy, pagers, renderer, started.back()); !status.ok())
+      return status;
+    if (started.size() <= ahead) continue;
+    if (Status status = takeOne(); !status.ok()) return status;
+  }
+  while (!started.empty()) {
+    if (Status status = takeOne(); !status.ok()) return status;
   }
   return sink != nullptr ? sink->finish() : Status{};
 }

@@ -56,7 +56,8 @@ scene::Shot shotOfFrame(const Film& film, std::size_t i);
 // What one picture cost.
 struct FrameCost {
   std::size_t index;  // of the film's times
-  double ms;          // to bring pages in, choose, draw and read the picture back; not to encode it
+  double ms;          // to bring pages in, choose, draw, wait and read the picture back; not to encode it, nor what
+                      // is done for the next picture meanwhile
   double load_ms;     // of it: asking and waiting for pages
   double choose_ms;   // of it: camera and triangles
   double draw_ms;     // of it: drawing and reading back

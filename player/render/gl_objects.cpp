@@ -26,7 +26,9 @@ Result<GLuint> compile(GLenum stage, const char* name, const std::string& define
   std::array<char, 2048> log{};
   glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
   glDeleteShader(shader);
-  const char* stage_name = stage == GL_VERTEX_SHADER ? " (vertex)" : " (fragment)";
+  const char* stage_name = stage == GL_VERTEX_SHADER     ? " (vertex)"
+                           : stage == GL_GEOMETRY_SHADER ? " (geometry)"
+                                                         : " (fragment)";
   return Fault{FaultCode::kNotBuilt, "", std::string("shader ") + name + stage_name,
                std::string("the driver refuses it: ") + log.data(), "use --renderer cpu"};
 }
@@ -45,20 +47,17 @@ GLuint ProgramKind::create() { return glCreateProgram(); }
 void ProgramKind::destroy(GLuint name) { glDeleteProgram(name); }
 
 Result<GlProgram> GlProgram::link(const char* name, const std::string& defines, const char* vertex,
-                                  const char* fragment) {
-  auto vertex_shader = compile(GL_VERTEX_SHADER, name, defines, vertex);
-  if (!vertex_shader.ok()) return vertex_shader.fault();
-  auto fragment_shader = compile(GL_FRAGMENT_SHADER, name, defines, fragment);
-  if (!fragment_shader.ok()) {
-    glDeleteShader(vertex_shader.value());
-    return fragment_shader.fault();
-  }
+                                  const char* geometry, const char* fragment) {
   GlProgram program;
   program.name_ = GlName<ProgramKind>::create();
   const GLuint id = program.name_.get();
-  for (const GLuint shader : {vertex_shader.value(), fragment_shader.value()}) {
-    glAttachShader(id, shader);
-    glDeleteShader(shader);
+  for (const auto& [stage, text] : {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_GEOMETRY_SHADER, geometry},
+                                    std::pair{GL_FRAGMENT_SHADER, fragment}}) {
+    if (text == nullptr) continue;
+    const auto shader = compile(static_cast<GLenum>(stage), name, defines, text);
+    if (!shader.ok()) return shader.fault();
+    glAttachShader(id, shader.value());
+    glDeleteShader(shader.value());  // when the program goes
   }
   glLinkProgram(id);
   GLint linked = 0;

@@ -67,8 +67,10 @@ using GlVertexArray = GlName<VertexArrayKind>;
 // A linked program. Uniforms that the compiler removed are ignored.
 class GlProgram {
  public:
-  // `defines`: lines put before both texts, after the version. Fault with the driver's log if it refuses.
-  static Result<GlProgram> link(const char* name, const std::string& defines, const char* vertex, const char* fragment);
+  // `defines`: lines put before all texts, after the version. `geometry` may be null. Fault with the driver's log if it
+  // refuses.
+  static Result<GlProgram> link(const char* name, const std::string& defines, const char* vertex, const char* geometry,
+                                const char* fragment);
 
   void use() const { glUseProgram(name_.get()); }
   void set(const char* uniform, int value) const { glUniform1i(at(uniform), value); }

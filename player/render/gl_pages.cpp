@@ -4,19 +4,23 @@
 #include <span>
 #include <string>
 
+#include "player/render/gl_units.h"
+
 namespace tet4d::render {
 namespace {
 
-struct Table {
-  GLenum format;
-  std::span<const std::byte> bytes;
-  std::size_t texel_bytes;
-};
+GlBuffer makeBuffer(GLenum target, std::span<const std::byte> bytes) {
+  GlBuffer buffer = GlBuffer::create();
+  glBindBuffer(target, buffer.get());
+  glBufferData(target, static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STATIC_DRAW);
+  return buffer;
+}
 
 }  // namespace
 
 void GlPage::bind() const {
-  for (std::size_t unit = 0; unit < tables.size(); ++unit) tables[unit].bind(static_cast<int>(unit));
+  vertices.bind(kVerticesUnit);
+  glBindVertexArray(arrays.get());
 }
 
 Result<GlPage*> GlPages::get(std::size_t source, std::size_t number, const dyntri::PageView& page) {
@@ -24,19 +28,19 @@ Result<GlPage*> GlPages::get(std::size_t source, std::size_t number, const dyntr
     found->second.last_frame = frame_;
     return &found->second;
   }
-  const Table tables[4] = {{GL_RGBA32F, std::as_bytes(page.vertices), 16},
-                           {GL_RG32UI, std::as_bytes(page.edges), 8},
-                           {GL_R32UI, std::as_bytes(page.triangles), 4},
-                           {GL_RG32F, std::as_bytes(page.lifespans), 8}};
+  auto vertices = makeTable(GL_RGBA32F, std::as_bytes(page.vertices), sizeof(Vec4f), kVerticesUnit,
+                            "page " + std::to_string(number));
+  if (!vertices.ok()) return vertices.fault();
   GlPage copy;
-  for (std::size_t unit = 0; unit < copy.tables.size(); ++unit) {
-    const Table& table = tables[unit];
-    auto made = makeTable(table.format, table.bytes, table.texel_bytes, static_cast<int>(unit),
-                          "page " + std::to_string(number));
-    if (!made.ok()) return made.fault();
-    copy.tables[unit] = std::move(made).value();
-    copy.bytes += table.bytes.size();
-  }
+  copy.vertices = std::move(vertices).value();
+  copy.arrays = GlVertexArray::create();
+  glBindVertexArray(copy.arrays.get());
+  copy.edges = makeBuffer(GL_ARRAY_BUFFER, std::as_bytes(page.edges));
+  glEnableVertexAttribArray(0);
+  glVertexAttribIPointer(0, 2, GL_UNSIGNED_INT, sizeof(dyntri::Edge), nullptr);
+  copy.triangles = makeBuffer(GL_ELEMENT_ARRAY_BUFFER, std::as_bytes(page.triangles));
+  if (Status status = checkGl("upload of a page"); !status.ok()) return status.fault();
+  copy.bytes = page.vertices.size_bytes() + page.edges.size_bytes() + page.triangles.size_bytes();
   copy.number = number;
   copy.last_frame = frame_;
   copy.edge_count = static_cast<GLint>(page.edges.size());

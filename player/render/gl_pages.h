@@ -1,7 +1,7 @@
-// Copies of pages in the driver's memory, as buffer textures, within a byte budget. Private to player/render.
+// Copies of pages in the driver's memory within a byte budget: vertices as a buffer texture, edges as a vertex buffer,
+// triangles as an index buffer. Private to player/render.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -13,7 +13,9 @@
 namespace tet4d::render {
 
 struct GlPage {
-  std::array<GlTable, 4> tables;           // by unit
+  GlTable vertices;
+  GlBuffer edges, triangles;
+  GlVertexArray arrays;                    // draws edges (attribute 0) by triangles
   std::map<std::size_t, GlTable> columns;  // those drawn so far
   std::size_t number = 0;
   std::uint64_t bytes = 0;
@@ -21,7 +23,7 @@ struct GlPage {
   GLint edge_count = 0;
   GLint key_count = 0;  // edges + vertices
 
-  // Binds the four tables to their units.
+  // Binds the vertices to their unit, and the arrays.
   void bind() const;
 };
 

@@ -139,9 +139,9 @@ GlPanels::~GlPanels() = default;
 
 Result<std::unique_ptr<GlPanels>> GlPanels::create(GlResolver resolver) {
   if (Status status = loadGl(resolver); !status.ok()) return status.fault();
-  auto gui = GlProgram::link("gui", "", shaders::kGuiVert, shaders::kGuiFrag);
+  auto gui = GlProgram::link("gui", "", shaders::kGuiVert, nullptr, shaders::kGuiFrag);
   if (!gui.ok()) return gui.fault();
-  auto picture = GlProgram::link("picture", "", shaders::kPictureVert, shaders::kPictureFrag);
+  auto picture = GlProgram::link("picture", "", shaders::kPictureVert, nullptr, shaders::kPictureFrag);
   if (!picture.ok()) return picture.fault();
   std::unique_ptr<GlPanels> panels(new GlPanels());
   panels->state_->gui = std::move(gui).value();

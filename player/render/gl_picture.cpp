@@ -29,9 +29,9 @@ Status checkFramebuffer(const char* what, GLsizei width, GLsizei height) {
 
 Result<GlPicture> GlPicture::create() {
   GlPicture picture;
-  auto background = GlProgram::link("background", "", shaders::kBackgroundVert, shaders::kBackgroundFrag);
+  auto background = GlProgram::link("background", "", shaders::kBackgroundVert, nullptr, shaders::kBackgroundFrag);
   if (!background.ok()) return background.fault();
-  auto panel = GlProgram::link("panel", "", shaders::kPanelVert, shaders::kPanelFrag);
+  auto panel = GlProgram::link("panel", "", shaders::kPanelVert, nullptr, shaders::kPanelFrag);
   if (!panel.ok()) return panel.fault();
   picture.background_ = std::move(background).value();
   picture.panel_ = std::move(panel).value();
@@ -47,18 +47,27 @@ Status GlPicture::begin(const scene::DrawList& list, GLsizei width, GLsizei heig
 }
 
 Status GlPicture::makeTarget(GLsizei width, GLsizei height) {
-  if (width_ == width && height_ == height) return {};
-  width_ = height_ = 0;
-  has_copy_ = false;
-  color_ = makeTexture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, width, height);
-  depth_ = makeTexture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, width, height);
-  framebuffer_ = GlFramebuffer::create();
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color_.get(), 0);
+  current_ = 1 - current_;
+  Target& target = targets_[current_];
+  if (depth_width_ != width || depth_height_ != height) {
+    depth_ = makeTexture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, width, height);
+    depth_width_ = width;
+    depth_height_ = height;
+    target.width = 0;  // its depth is another one
+  }
+  if (target.width == width && target.height == height) return {};
+  target.width = 0;
+  target.color = makeTexture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, width, height);
+  target.framebuffer = GlFramebuffer::create();
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target.color.get(), 0);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_.get(), 0);
-  if (Status status = checkFramebuffer("picture", width, height); !status.ok()) return status;
-  width_ = width;
-  height_ = height;
+  if (Status status = checkFramebuffer("picture", width, height); !status.ok()) {
+    depth_width_ = 0;
+    return status;
+  }
+  target.width = width;
+  target.height = height;
   return {};
 }
 
@@ -84,26 +93,30 @@ void GlPicture::drawBackground(const scene::DrawList& list) const {
 }
 
 void GlPicture::copyBackground() {
-  if (!has_copy_) behind_ = makeTexture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, width_, height_);
-  has_copy_ = true;
+  const Target& target = targets_[current_];
+  if (copy_width_ != target.width || copy_height_ != target.height)
+    behind_ = makeTexture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, target.width, target.height);
+  copy_width_ = target.width;
+  copy_height_ = target.height;
   glActiveTexture(GL_TEXTURE0 + kBehindUnit);
   glBindTexture(GL_TEXTURE_2D, behind_.get());
-  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, width_, height_);
+  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, target.width, target.height);
 }
 
 void GlPicture::bind() const {
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
-  glViewport(0, 0, width_, height_);
+  const Target& target = targets_[current_];
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
+  glViewport(0, 0, target.width, target.height);
   glDisable(GL_BLEND);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
 }
 
-Image GlPicture::read() const {
-  Image flipped(static_cast<std::uint32_t>(width_), static_cast<std::uint32_t>(height_));
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
+Image GlPicture::readTarget(const Target& target) {
+  Image flipped(static_cast<std::uint32_t>(target.width), static_cast<std::uint32_t>(target.height));
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, flipped.rgba.data());
+  glReadPixels(0, 0, target.width, target.height, GL_RGBA, GL_UNSIGNED_BYTE, flipped.rgba.data());
   for (std::uint32_t y = 0; y < flipped.height / 2; ++y) {
     std::swap_ranges(flipped.row(y), flipped.row(y) + std::size_t{4} * flipped.width,
                      flipped.row(flipped.height - 1 - y));

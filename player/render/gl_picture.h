@@ -2,6 +2,9 @@
 // to player/render.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "player/render/gl_objects.h"
 #include "player/render/image.h"
 #include "player/scene/draw_list.h"
@@ -19,26 +22,34 @@ class GlPicture {
   // Compiles the background's programs in the current context.
   static Result<GlPicture> create();
 
-  // Starts a picture of width x height samples with the list's background. If a surface refracts, a copy of it is bound
-  // to kBehindUnit.
+  // Starts a picture of width x height samples with the list's background, in one of two targets by turns. If a surface
+  // refracts, a copy of the background is bound to kBehindUnit.
   Status begin(const scene::DrawList& list, GLsizei width, GLsizei height);
 
   // Draw calls go to the picture from here on, with depth test and without blending.
   void bind() const;
 
-  Image read() const;
+  // The picture begun last, or the one before it: read while this one is being drawn, it costs no wait.
+  Image read() const { return readTarget(targets_[current_]); }
+  Image readBefore() const { return readTarget(targets_[1 - current_]); }
 
  private:
+  struct Target {
+    GLsizei width = 0, height = 0;
+    GlTexture color;
+    GlFramebuffer framebuffer;
+  };
   Status makeTarget(GLsizei width, GLsizei height);
+  static Image readTarget(const Target& target);
   void drawBackground(const scene::DrawList& list) const;
   void copyBackground();
 
   GlProgram background_, panel_;
   GlVertexArray no_attributes_;
-  GLsizei width_ = 0, height_ = 0;
-  GlTexture color_, depth_, behind_;
-  GlFramebuffer framebuffer_;
-  bool has_copy_ = false;
+  std::array<Target, 2> targets_;
+  std::size_t current_ = 0;
+  GLsizei depth_width_ = 0, depth_height_ = 0, copy_width_ = 0, copy_height_ = 0;
+  GlTexture depth_, behind_;  // of both targets: what one picture writes is of no use to the next
 };
 
 }  // namespace tet4d::render

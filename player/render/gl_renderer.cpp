@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "player/render/gl_objects.h"
 #include "player/render/gl_pages.h"
 #include "player/render/gl_picture.h"
 #include "player/render/gl_shading.h"
 #include "player/render/gl_units.h"
+#include "player/render/page_slice.h"
 #include "player/render/shaders.h"
 
 namespace tet4d::render {
@@ -24,72 +26,75 @@ struct NormalSums {
 };
 
 struct Programs {
-  GlProgram accumulate, smooth, flat;
+  GlProgram accumulate;
+  GlSurfacePrograms smooth{"dyntri, smooth", "", shaders::kDyntriVert, nullptr};
+  GlSurfacePrograms flat{"dyntri, flat", "#define BY_TRIANGLE\n#define FLAT\n", shaders::kDyntriVert,
+                         shaders::kFlatGeom};
 };
 
+// Mesa's drivers without a GPU say so in their names.
+bool hasGpu() {
+  const auto* text = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const std::string name = text != nullptr ? text : "";
+  return name.find("llvmpipe") == std::string::npos && name.find("softpipe") == std::string::npos;
+}
+
+// Those of a surface of one colour are linked now, so that a driver which cannot is found out.
 Result<Programs> makePrograms() {
   Programs programs;
-  auto accumulate =
-      GlProgram::link("dyntri, normals", "#define ACCUMULATE\n", shaders::kDyntriVert, shaders::kNormalsFrag);
+  auto accumulate = GlProgram::link("dyntri, normals", "#define BY_TRIANGLE\n", shaders::kDyntriVert,
+                                    shaders::kNormalsGeom, shaders::kNormalsFrag);
   if (!accumulate.ok()) return accumulate.fault();
-  auto smooth = GlProgram::link("dyntri, smooth", "", shaders::kDyntriVert, shaders::kPhongFrag);
-  if (!smooth.ok()) return smooth.fault();
-  auto flat = GlProgram::link("dyntri, flat", "#define FLAT\n", shaders::kDyntriVert, shaders::kPhongFrag);
-  if (!flat.ok()) return flat.fault();
   programs.accumulate = std::move(accumulate).value();
-  programs.smooth = std::move(smooth).value();
-  programs.flat = std::move(flat).value();
+  for (GlSurfacePrograms* surfaces : {&programs.smooth, &programs.flat}) {
+    if (const auto linked = surfaces->of({}); !linked.ok()) return linked.fault();
+  }
   return programs;
-}
-
-void setLookup(const GlProgram& program, const scene::DrawSurface& surface) {
-  program.use();
-  program.set("vertices", kVerticesUnit);
-  program.set("edges", kEdgesUnit);
-  program.set("triangles", kTrianglesUnit);
-  program.set("lifespans", kLifespansUnit);
-  program.set("t", surface.t);
-  program.set("last_t", surface.last_t);
-}
-
-void setPlace(const GlProgram& program, const scene::DrawSurface& surface) {
-  program.set("normal_sums", kNormalSumsUnit);
-  program.set("file_normals", kFileNormalsUnit);
-  program.set("column", kColumnUnit);
-  program.set("index_centre", surface.index_centre);
-  program.set("index_to_relative", surface.index_to_relative);
-  program.set("normal_to_relative", surface.normal_to_relative);
-  program.set("offset", surface.offset);
 }
 
 class GlRenderer final : public Renderer {
  public:
-  GlRenderer(Programs programs, GlPicture picture, std::uint64_t gpu_budget_bytes)
-      : programs_(std::move(programs)),
+  GlRenderer(Programs programs, GlPicture picture, std::uint64_t gpu_budget_bytes, bool plain_normals)
+      : plain_normals_(plain_normals),
+        programs_(std::move(programs)),
         picture_(std::move(picture)),
-        pages_(gpu_budget_bytes),
-        no_attributes_(GlVertexArray::create()) {}
+        pages_(gpu_budget_bytes) {}
   const char* name() const override { return "gl"; }
   std::uint64_t gpuBytes() const override { return pages_.bytes(); }
 
+  std::size_t picturesAhead() const override { return 1; }
+
   Result<Image> draw(const scene::DrawList& list, std::span<const stream::Residency* const> sources) override {
+    if (Status status = start(list, sources); !status.ok()) return status.fault();
+    return take();
+  }
+
+  Status start(const scene::DrawList& list, std::span<const stream::Residency* const> sources) override {
     const auto grid = sampleGrid(list.format);
     if (!grid.ok()) return grid.fault();
     const auto width = static_cast<GLsizei>(list.format.width * grid.value());
     const auto height = static_cast<GLsizei>(list.format.height * grid.value());
     pages_.beginFrame();
-    if (Status status = picture_.begin(list, width, height); !status.ok()) return status.fault();
-    glBindVertexArray(no_attributes_.get());
+    if (Status status = picture_.begin(list, width, height); !status.ok()) return status;
     for (const scene::DrawSurface& surface : list.surfaces) {
       for (const auto items : itemsByPage(surface.items)) {
-        if (Status status = drawPage(list, surface, items, *sources[surface.source]); !status.ok())
-          return status.fault();
+        if (Status status = drawPage(list, surface, items, *sources[surface.source]); !status.ok()) return status;
       }
     }
-    Image image = picture_.read();
-    if (Status status = checkGl("drawing"); !status.ok()) return status.fault();
+    glFlush();
+    if (Status status = checkGl("drawing"); !status.ok()) return status;
     pages_.evict();
-    return boxFilter(image, grid.value());
+    sides_.push_back(grid.value());
+    return {};
+  }
+
+  Result<Image> take() override {
+    const std::uint32_t side = sides_.front();
+    Image image = sides_.size() == 1 ? picture_.read() : picture_.readBefore();
+    sides_.erase(sides_.begin());
+    if (Status status = checkGl("reading a picture"); !status.ok()) return status.fault();
+    if (side == 1) return image;
+    return boxFilter(image, side);
   }
 
  private:
@@ -104,12 +109,20 @@ class GlRenderer final : public Renderer {
     if (!columns.ok()) return columns.fault();
     page.value()->bind();
     if (list.smooth && !columns.value().has_normals) {
-      if (Status status = sumNormals(surface, items, *page.value()); !status.ok()) return status;
+      const Status status =
+          plain_normals_ ? sumInPlainCode(surface, items, *view) : sumNormals(surface, items, *page.value());
+      if (!status.ok()) return status;
     }
-    const GlProgram& program = list.smooth ? programs_.smooth : programs_.flat;
-    setLookup(program, surface);
+    const auto linked = (list.smooth ? programs_.smooth : programs_.flat).of(surface);
+    if (!linked.ok()) return linked.fault();
+    const GlProgram& program = *linked.value();
+    program.use();
+    setSlice(program, surface);
     setPlace(program, surface);
     shading_.set(program, list, surface);
+    program.set("normal_sums", kNormalSumsUnit);
+    program.set("file_normals", kFileNormalsUnit);
+    program.set("column", kColumnUnit);
     program.set("edge_count", page.value()->edge_count);
     program.set("sums_size", std::max(sums_.width, 1), std::max(sums_.height, 1));
     program.set("has_file_normals", columns.value().has_normals ? 1 : 0);
@@ -119,8 +132,9 @@ class GlRenderer final : public Renderer {
     glActiveTexture(GL_TEXTURE0 + kNormalSumsUnit);
     glBindTexture(GL_TEXTURE_2D, sums_.texture.get());
     picture_.bind();
-    glFrontFace(surface.mirrored ? GL_CW : GL_CCW);
-    drawCorners(GL_TRIANGLES, items);
+    if (list.smooth) glEnable(GL_CLIP_DISTANCE0);  // the flat program drops dead triangles itself
+    drawRuns(items);
+    glDisable(GL_CLIP_DISTANCE0);
     return {};
   }
 
@@ -169,10 +183,31 @@ class GlRenderer final : public Renderer {
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
-    setLookup(programs_.accumulate, surface);
+    programs_.accumulate.use();
+    setSlice(programs_.accumulate, surface);
     programs_.accumulate.set("edge_count", page.edge_count);
     programs_.accumulate.set("sums_size", sums_.width, sums_.height);
-    drawCorners(GL_POINTS, items);
+    drawRuns(items);
+    return {};
+  }
+
+  // The same sums by the slicer of the plain renderer, written into the texture.
+  Status sumInPlainCode(const scene::DrawSurface& surface, std::span<const scene::DrawItem> items,
+                        const dyntri::PageView& page) {
+    const std::size_t keys = page.edges.size() + page.vertices.size();
+    const auto rows = static_cast<GLsizei>((keys + kSumsWidth - 1) / kSumsWidth);
+    if (Status status = makeSums(rows); !status.ok()) return status;
+    slicer_.slice(page, items, surface.t, surface.last_t, slice_);
+    // Texels of keys that no living triangle has are left as they are: nothing reads them.
+    const std::size_t texels = std::size_t{kSumsWidth} * static_cast<std::size_t>(rows);
+    if (texels_.size() < texels) texels_.resize(texels);
+    for (std::size_t i = 0; i < slice_.keys.size(); ++i) {
+      const Vec3f& area = slice_.areas[i];
+      texels_[slice_.keys[i]] = {area.x, area.y, area.z, 0};
+    }
+    glActiveTexture(GL_TEXTURE0 + kNormalSumsUnit);
+    glBindTexture(GL_TEXTURE_2D, sums_.texture.get());
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kSumsWidth, rows, GL_RGBA, GL_FLOAT, texels_.data());
     return {};
   }
 
@@ -196,29 +231,38 @@ class GlRenderer final : public Renderer {
     return {};
   }
 
-  static void drawCorners(GLenum mode, std::span<const scene::DrawItem> items) {
-    for (const scene::DrawItem& item : items)
-      glDrawArrays(mode, static_cast<GLint>(3 * item.first), static_cast<GLsizei>(3 * item.count));
+  // Of the page whose arrays are bound.
+  static void drawRuns(std::span<const scene::DrawItem> items) {
+    for (const scene::DrawItem& item : items) {
+      const auto* first = reinterpret_cast<const void*>(item.first * sizeof(dyntri::Triangle));
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * item.count), GL_UNSIGNED_INT, first);
+    }
   }
 
+  bool plain_normals_;
   Programs programs_;
   GlPicture picture_;
   GlPages pages_;
-  GlVertexArray no_attributes_;
   GlShading shading_;
   NormalSums sums_;
+  PageSlicer slicer_;
+  PageSlice slice_;
+  std::vector<Vec4f> texels_;
+  std::vector<std::uint32_t> sides_;  // sample grids of the pictures started and not taken: at most two
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Renderer>> makeGlRenderer(GlResolver resolver, std::uint64_t gpu_budget_bytes) {
+Result<std::unique_ptr<Renderer>> makeGlRenderer(GlResolver resolver, std::uint64_t gpu_budget_bytes,
+                                                 GlNormals normals) {
   if (Status status = loadGl(resolver); !status.ok()) return status.fault();
+  const bool plain_normals = normals == GlNormals::kPlain || (normals == GlNormals::kAuto && !hasGpu());
   auto programs = makePrograms();
   if (!programs.ok()) return programs.fault();
   auto picture = GlPicture::create();
   if (!picture.ok()) return picture.fault();
-  return std::unique_ptr<Renderer>(
-      std::make_unique<GlRenderer>(std::move(programs).value(), std::move(picture).value(), gpu_budget_bytes));
+  return std::unique_ptr<Renderer>(std::make_unique<GlRenderer>(std::move(programs).value(), std::move(picture).value(),
+                                                                gpu_budget_bytes, plain_normals));
 }
 
 }  // namespace tet4d::render

@@ -1,9 +1,11 @@
 #include "player/render/gl_shading.h"
 
 #include <string>
+#include <utility>
 
 #include "player/render/gl_picture.h"
 #include "player/render/gl_units.h"
+#include "player/render/shaders.h"
 
 namespace tet4d::render {
 namespace {
@@ -27,6 +29,33 @@ void setView(const GlProgram& program, const scene::DrawList& list) {
 
 }  // namespace
 
+Result<const GlProgram*> GlSurfacePrograms::of(const scene::DrawSurface& surface) {
+  std::string defines = defines_;
+  if (surface.column) defines += "#define BY_COLUMN\n";
+  if (surface.refraction > 0) defines += "#define REFRACTS\n";
+  std::optional<GlProgram>& program = programs_[(surface.column ? 1U : 0U) + (surface.refraction > 0 ? 2U : 0U)];
+  if (!program) {
+    auto linked = GlProgram::link(name_, defines, vertex_, geometry_, shaders::kPhongFrag);
+    if (!linked.ok()) return linked.fault();
+    program = std::move(linked).value();
+  }
+  return &*program;
+}
+
+void setSlice(const GlProgram& program, const scene::DrawSurface& surface) {
+  program.set("vertices", kVerticesUnit);
+  program.set("t", surface.t);
+  program.set("last_t", surface.last_t);
+}
+
+void setPlace(const GlProgram& program, const scene::DrawSurface& surface) {
+  program.set("index_centre", surface.index_centre);
+  program.set("index_to_relative", surface.index_to_relative);
+  program.set("normal_to_relative", surface.normal_to_relative);
+  program.set("offset", surface.offset);
+  glFrontFace(surface.mirrored ? GL_CW : GL_CCW);
+}
+
 void GlShading::set(const GlProgram& program, const scene::DrawList& list, const scene::DrawSurface& surface) {
   setView(program, list);
   program.set("front_color", surface.front_color);
@@ -37,9 +66,8 @@ void GlShading::set(const GlProgram& program, const scene::DrawList& list, const
   program.set("tint", surface.tint);
   program.set("refraction_depth", list.refraction_depth * surface.depth);
   program.set("lit", surface.lit ? 1 : 0);
-  program.set("by_column", surface.column ? 1 : 0);
-  program.set("color_table", kColorTableUnit);
   if (!surface.column) return;
+  program.set("color_table", kColorTableUnit);
   program.set("low", surface.column->low);
   program.set("high", surface.column->high);
   program.set("logarithmic", surface.column->logarithmic ? 1 : 0);

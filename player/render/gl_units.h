@@ -5,9 +5,7 @@ namespace tet4d::render {
 
 enum GlUnit : int {
   kVerticesUnit,
-  kEdgesUnit,
-  kTrianglesUnit,
-  kLifespansUnit,
+  kTetsUnit,
   kNormalSumsUnit,
   kColumnUnit,
   kFileNormalsUnit,

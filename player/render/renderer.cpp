@@ -2,8 +2,18 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace tet4d::render {
+
+Status Renderer::start(const scene::DrawList& list, std::span<const stream::Residency* const> sources) {
+  auto image = draw(list, sources);
+  if (!image.ok()) return image.fault();
+  started_ = std::move(image).value();
+  return {};
+}
+
+Result<Image> Renderer::take() { return std::move(started_); }
 
 Result<std::uint32_t> sampleGrid(const scene::Format& format) {
   std::uint32_t side = 0;

@@ -2,6 +2,7 @@
 // docs/numerics.md: OpenGL with the paper's lookup shader, and plain C++ with the slice formulas of formats/core.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -27,6 +28,15 @@ class Renderer {
   // copies of pages by source and number: the same rank must mean the same file in every call. A Fault says what the
   // machine or the driver refused.
   virtual Result<Image> draw(const scene::DrawList& list, std::span<const stream::Residency* const> sources) = 0;
+  // Draws as draw() does, in two steps, so that a film starts the next picture before it waits for this one. take()
+  // hands over the oldest picture that was started and not taken; no more than picturesAhead() may wait when the next
+  // one is started. The pages may go after start(). Nothing waits when draw() is called.
+  virtual std::size_t picturesAhead() const { return 0; }
+  virtual Status start(const scene::DrawList& list, std::span<const stream::Residency* const> sources);
+  virtual Result<Image> take();
+
+ private:
+  Image started_;  // by a renderer that finishes a picture before it returns
 };
 
 // Side of the sample grid of a pixel (1, 2, 3 or 4), or a Fault (kUsage) if the format is not one the renderers serve.

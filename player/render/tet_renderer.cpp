@@ -13,8 +13,6 @@
 namespace tet4d::render {
 namespace {
 
-constexpr int kTetsUnit = kEdgesUnit;  // this renderer has no edges
-
 struct TetCopy {
   GlTable vertices, tets;
   std::uint64_t bytes = 0, last_frame = 0;
@@ -23,8 +21,8 @@ struct TetCopy {
 
 class TetRenderer final : public Renderer {
  public:
-  TetRenderer(GlProgram program, GlPicture picture, std::uint64_t gpu_budget_bytes)
-      : program_(std::move(program)),
+  TetRenderer(GlSurfacePrograms programs, GlPicture picture, std::uint64_t gpu_budget_bytes)
+      : programs_(std::move(programs)),
         picture_(std::move(picture)),
         no_attributes_(GlVertexArray::create()),
         budget_bytes_(gpu_budget_bytes) {}
@@ -43,7 +41,7 @@ class TetRenderer final : public Renderer {
     picture_.bind();
     glBindVertexArray(no_attributes_.get());
     for (const scene::DrawSurface& surface : list.surfaces) {
-      setSurface(list, surface);
+      if (Status status = setSurface(list, surface); !status.ok()) return status.fault();
       for (const auto items : itemsByPage(surface.items)) {
         const auto copy = copyOf(surface.source, items.front().page, *sources[surface.source]);
         if (!copy.ok()) return copy.fault();
@@ -58,18 +56,16 @@ class TetRenderer final : public Renderer {
   }
 
  private:
-  void setSurface(const scene::DrawList& list, const scene::DrawSurface& surface) {
-    program_.use();
-    program_.set("vertices", kVerticesUnit);
-    program_.set("tets", kTetsUnit);
-    program_.set("t", surface.t);
-    program_.set("last_t", surface.last_t);
-    program_.set("index_centre", surface.index_centre);
-    program_.set("index_to_relative", surface.index_to_relative);
-    program_.set("normal_to_relative", surface.normal_to_relative);
-    program_.set("offset", surface.offset);
-    shading_.set(program_, list, surface);
-    glFrontFace(surface.mirrored ? GL_CW : GL_CCW);
+  Status setSurface(const scene::DrawList& list, const scene::DrawSurface& surface) {
+    const auto linked = programs_.of(surface);
+    if (!linked.ok()) return linked.fault();
+    const GlProgram& program = *linked.value();
+    program.use();
+    program.set("tets", kTetsUnit);
+    setSlice(program, surface);
+    setPlace(program, surface);
+    shading_.set(program, list, surface);
+    return {};
   }
 
   // The driver's copy of a page: 16 bytes a vertex and 16 a tetrahedron.
@@ -106,7 +102,7 @@ class TetRenderer final : public Renderer {
     }
   }
 
-  GlProgram program_;
+  GlSurfacePrograms programs_;
   GlPicture picture_;
   GlShading shading_;
   GlVertexArray no_attributes_;
@@ -118,12 +114,12 @@ class TetRenderer final : public Renderer {
 
 Result<std::unique_ptr<Renderer>> makeTetRenderer(GlResolver resolver, std::uint64_t gpu_budget_bytes) {
   if (Status status = loadGl(resolver); !status.ok()) return status.fault();
-  auto program = GlProgram::link("tets", "", shaders::kTetsVert, shaders::kPhongFrag);
-  if (!program.ok()) return program.fault();
+  GlSurfacePrograms programs("tets", "", shaders::kTetsVert, nullptr);
+  if (const auto linked = programs.of({}); !linked.ok()) return linked.fault();
   auto picture = GlPicture::create();
   if (!picture.ok()) return picture.fault();
   return std::unique_ptr<Renderer>(
-      std::make_unique<TetRenderer>(std::move(program).value(), std::move(picture).value(), gpu_budget_bytes));
+      std::make_unique<TetRenderer>(std::move(programs), std::move(picture).value(), gpu_budget_bytes));
 }
 
 }  // namespace tet4d::render

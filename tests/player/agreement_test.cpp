@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "player/host/offscreen_gl.h"
+#include "player/render/gl_renderer.h"
 #include "player/scene/scene_files.h"
 #include "tests/player/picture.h"
 #include "tests/player/swept_mesh.h"
@@ -105,6 +106,83 @@ TEST_F(Agreement, TwoFilesOfOneSceneHideOneAnother) {
   list.surfaces[1].items.clear();
   const test::Difference alone = test::compare(cpu_->draw(list, sources).value(), by_cpu.value());
   EXPECT_GT(alone.share_above_8, 0.03) << "the second file is seen";
+}
+
+// Phong and glass, several files, several samples a pixel: the first surface is seen through the second one's rim only.
+TEST_F(Agreement, GlassAndPhongOfTwoFilesUnderSamples) {
+  const auto open = [](const std::string& path) { return std::move(dyntri::File::open(path)).value(); };
+  const dyntri::File first = open(test::writeTestSphere("agree_opaque.t4d", 2));
+  const dyntri::File second =
+      open(test::writeTestSphere("agree_glass.t4d", 2, {{5, 1, 1}, {{{0.9, 0, 0}, {0, 0.9, 0}, {0, 0, 0.9}}}}));
+  const std::vector<scene::SceneFile> files{{&first, std::nullopt, true}, {&second, std::nullopt, true}};
+  scene::Shot shot = scene::defaultShot(scene::sceneBox(files), 1.5);
+  shot.background.checker = 8;
+  shot.material.specular = 0.6;
+  shot.material.shininess = 60;
+  stream::PageSource a(first, 1u << 30), b(second, 1u << 30);
+  const std::size_t pages[] = {0};
+  for (stream::PageSource* source : {&a, &b}) ASSERT_TRUE(source->load(0).ok());
+  const std::array<const stream::Residency*, 2> sources{&a, &b};
+  for (const std::uint32_t samples : {1u, 4u, 16u}) {
+    scene::DrawList list = scene::makeDrawList(files, shot, {240, 160, samples}, true);
+    scene::chooseTriangles(a, pages, 0.5f, 1, list.surfaces[0]);
+    scene::chooseTriangles(b, pages, 0.5f, 1, list.surfaces[1]);
+    const auto opaque = cpu_->draw(list, sources);
+    list.surfaces[1].refraction = 1.33f;
+    list.surfaces[1].tint = 0.4f;
+    const auto by_gl = gl_->draw(list, sources), by_cpu = cpu_->draw(list, sources);
+    ASSERT_TRUE(opaque.ok() && by_gl.ok() && by_cpu.ok());
+    const test::Difference d = test::compare(by_gl.value(), by_cpu.value());
+    EXPECT_LT(d.rms, kMostRms) << samples << " samples";
+    EXPECT_LT(d.share_above_8, 2 * kMostShare) << samples << " samples: edges of the checker add to those of surfaces";
+    EXPECT_GT(test::compare(opaque.value(), by_cpu.value()).share_above_8, 0.03) << "one of the two is glass";
+  }
+}
+
+#ifdef TET4D_HAS_GL
+
+// Normals summed by the driver are those that plain C++ sums, with and without the frame times' merged vertices.
+TEST_F(Agreement, NormalsSummedByTheDriver) {
+  const auto context = host::makeOffscreenContext();
+  ASSERT_TRUE(context.ok());
+  std::unique_ptr<render::Renderer> by_driver;
+  {
+    auto made = render::makeGlRenderer(context.value()->resolver(), 1u << 30, render::GlNormals::kDriver);
+    ASSERT_TRUE(made.ok()) << made.fault().what;
+    by_driver = std::move(made).value();
+  }
+  const test::Page page = test::sweep(test::icosphere(3), test::kTestSphere.motion(), 0, 3);
+  Stage stage(test::writeFile("agree_normals.t4d", {page}, {{}, {0, 1, 2, 3}, paged::Codec::kRaw}));
+  for (const float t : {0.0f, 0.5f, 1.0f, 2.25f, 3.0f}) {
+    ASSERT_TRUE(context.value()->makeCurrent());
+    const render::Image summed = stage.draw(*by_driver, t);
+    const test::Difference d = test::compare(summed, stage.draw(*cpu_, t));
+    EXPECT_LT(d.rms, kMostRms) << t;
+    EXPECT_LT(d.share_above_8, kMostShare) << t;
+    EXPECT_LT(test::compare(summed, stage.draw(*gl_, t)).rms, 0.05) << t;
+  }
+  ASSERT_TRUE(context.value()->makeCurrent());
+  by_driver.reset();
+}
+
+#endif
+
+// A run may hold triangles that are dead at t: whatever their edges would cross, nothing of them is drawn.
+TEST_F(Agreement, DeadTrianglesOfARunLeaveNothing) {
+  const test::Page page = test::sweep(test::icosphere(2), test::kTestSphere.motion(), 0, 3);
+  Stage stage(test::writeFile("agree_dead.t4d", {page}, {{}, {0, 1, 2, 3}, paged::Codec::kRaw}));
+  for (const bool smooth : {true, false}) {
+    stage.smooth = smooth;
+    for (const float t : {0.0f, 0.5f, 1.0f, 2.25f, 3.0f}) {
+      scene::DrawList list = stage.list(t);
+      const auto chosen = gl_->draw(list, stage.sources());
+      list.surfaces[0].items = {{0, 0, page.triangles.size()}};
+      ASSERT_GT(page.triangles.size(), 2 * list.drawn());
+      const auto whole = gl_->draw(list, stage.sources());
+      ASSERT_TRUE(chosen.ok() && whole.ok());
+      EXPECT_EQ(chosen.value().rgba, whole.value().rgba) << (smooth ? "smooth" : "flat") << ", t = " << t;
+    }
+  }
 }
 
 TEST_F(Agreement, TestCanFail) {

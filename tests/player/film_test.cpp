@@ -213,6 +213,55 @@ TEST_F(Film, PlaysWithCostsAndOrbit) {
   EXPECT_EQ(sheet.compose().width, 2 * 160 + 3 * 6u);
 }
 
+// Keeps the pictures.
+class KeptFilm final : public FrameSink {
+ public:
+  Status add(const render::Image& image) override { return pictures.push_back(image), Status{}; }
+  Status finish() override { return finished = true, Status{}; }
+  std::vector<render::Image> pictures;
+  bool finished = false;
+};
+
+// OpenGL starts a picture before the one in front of it is read: the film has the same pictures, in order.
+TEST_F(Film, PicturesDrawnAheadAreThoseDrawnOneByOne) {
+  auto file = dyntri::File::open(test::writeTestSphere("film_ahead.t4d", 4));
+  ASSERT_TRUE(file.ok());
+  const scene::WorldBox box = scene::worldBox(file.value().header().index_to_world, file.value().header().bounds);
+  for (const std::string name : {"cpu", "gl"}) {
+    if (name == "gl" && !hasOffscreenGl()) continue;
+    for (const std::size_t count : {0u, 1u, 2u, 7u}) {
+      host::Film film{{{&file.value(), std::nullopt, true}}, scene::defaultShot(box, 1.6), {90, 60, 4}, true, 120, {}};
+      for (std::size_t i = 0; i < count; ++i)
+        film.times.push_back(pictureTime(film.files, 3.0 * static_cast<double>(i) / 7));
+      stream::Pager source(file.value(), {});
+      const std::array<stream::Pager*, 1> sources{&source};
+      auto ahead = makeOffscreenRenderer(name, 1, 1u << 30), one_by_one = makeOffscreenRenderer(name, 1, 1u << 30);
+      ASSERT_TRUE(ahead.ok() && one_by_one.ok());
+      EXPECT_EQ(ahead.value()->picturesAhead(), name == "gl" ? 1u : 0u);
+      KeptFilm kept, single;
+      std::vector<std::size_t> told;
+      ASSERT_TRUE(play(film, sources, *ahead.value(), &kept, nullptr, [&](const FrameCost& cost) {
+                    told.push_back(cost.index);
+                  }).ok());
+      EXPECT_TRUE(kept.finished);
+      ASSERT_EQ(kept.pictures.size(), count);
+      ASSERT_EQ(told.size(), count);
+      for (std::size_t i = 0; i < count; ++i) {
+        host::Film alone = film;
+        alone.orbit_degrees = 0;
+        alone.shot = shotOfFrame(film, i);
+        alone.times = {film.times[i]};
+        ASSERT_TRUE(play(alone, sources, *one_by_one.value(), &single, nullptr, [](const FrameCost&) {}).ok());
+        EXPECT_EQ(kept.pictures[i].rgba, single.pictures.back().rgba) << name << ", picture " << i << " of " << count;
+        EXPECT_EQ(told[i], i);
+        if (i > 0) {
+          EXPECT_NE(kept.pictures[i].rgba, kept.pictures[i - 1].rgba);
+        }
+      }
+    }
+  }
+}
+
 TEST(Offscreen, RendererNames) {
   EXPECT_TRUE(makeOffscreenRenderer("cpu", 1, 0).ok());
   auto other = makeOffscreenRenderer("vulkan", 1, 0);

@@ -1,5 +1,7 @@
 // Two-sided Phong lighting per sample, in linear light, written as sRGB; colours by a column; refraction. As
-// player/render/phong.h.
+// player/render/phong.h. Variants, so that drivers which take every branch take none in vain:
+//   BY_COLUMN  the surface has a column's colours
+//   REFRACTS   it is seen through
 const int kMaxLights = 8;  // scene::kMaxLights
 const int kMapEntries = 256;
 
@@ -12,15 +14,6 @@ uniform vec3 ambient, front_color, back_color;
 uniform float specular, shininess;
 
 uniform bool lit;
-uniform bool by_column, logarithmic;
-uniform float low, high;
-uniform vec3 below, above, unknown;
-uniform sampler2D color_table;  // linear light
-
-uniform float refraction, tint, refraction_depth;
-uniform mat4 relative_to_clip;
-uniform vec3 up, background_top, background_bottom;
-uniform sampler2D behind;  // the picture before any surface, sRGB
 
 in vec3 position, normal;
 in float value;
@@ -30,9 +23,12 @@ vec3 linearToSrgb(vec3 c) {
   return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
 }
 
-vec3 srgbToLinear(vec3 c) {
-  return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
-}
+#ifdef BY_COLUMN
+
+uniform bool logarithmic;
+uniform float low, high;
+uniform vec3 below, above, unknown;
+uniform sampler2D color_table;  // linear light
 
 vec3 columnColor() {
   if (isnan(value)) return unknown;
@@ -47,6 +43,18 @@ vec3 columnColor() {
   vec3 a = texelFetch(color_table, ivec2(entry, 0), 0).rgb;
   vec3 b = texelFetch(color_table, ivec2(entry + 1, 0), 0).rgb;
   return a + (at - float(entry)) * (b - a);
+}
+
+#endif
+#ifdef REFRACTS
+
+uniform float refraction, tint, refraction_depth;
+uniform mat4 relative_to_clip;
+uniform vec3 up, background_top, background_bottom;
+uniform sampler2D behind;  // the picture before any surface, sRGB
+
+vec3 srgbToLinear(vec3 c) {
+  return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
 }
 
 // The background where the ray from here along `ray` meets it.
@@ -72,17 +80,28 @@ vec3 transparent(vec3 viewer, vec3 n, vec3 base) {
   return through + reflected * (sky - through);
 }
 
+#endif
+
 void main() {
   vec3 viewer = perspective ? normalize(eye_or_backward - position) : eye_or_backward;
   float size = length(normal);
   vec3 n = size > 0.0 ? (gl_FrontFacing ? normal : -normal) / size : viewer;
-  vec3 base = by_column ? columnColor() : gl_FrontFacing ? front_color : back_color;
-  if (!lit && refraction == 0.0) {
+#ifdef BY_COLUMN
+  vec3 base = columnColor();
+#else
+  vec3 base = gl_FrontFacing ? front_color : back_color;
+#endif
+#ifdef REFRACTS
+  const float opaque = 0.0;
+  vec3 sum = transparent(viewer, n, base);
+#else
+  if (!lit) {
     color = vec4(linearToSrgb(clamp(base, 0.0, 1.0)), 1.0);
     return;
   }
-  float opaque = refraction > 0.0 ? 0.0 : 1.0;
-  vec3 sum = refraction > 0.0 ? transparent(viewer, n, base) : ambient * base;
+  const float opaque = 1.0;
+  vec3 sum = ambient * base;
+#endif
   for (int i = 0; i < light_count; ++i) {
     float diffuse = dot(n, light_toward[i]);
     if (diffuse <= 0.0) continue;
