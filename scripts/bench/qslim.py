@@ -17,7 +17,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 COLUMNS = [("series", "order"), ("ratio", "to"), ("tets", "tetrahedra"), ("seconds_work", "seconds"), ("seconds_cpu", "CPU, whole program"),
            ("peak_bytes", "peak"), ("rms_at", "rms at frames"), ("rms_between", "rms between"), ("p99_between", "p99 between"),
-           ("max_at", "max at"), ("max_between", "max between"), ("volume_error_between", "volume")]
+           ("max_at", "max at"), ("max_between", "max between"), ("volume_error_between", "volume"),
+           ("closed_slices", "closed slices")]
 STIFF = [("case", "case"), ("order", "order"), ("metric", "metric"), ("tets_in", "tetrahedra in"), ("tets", "out"),
          ("us_per_tet", "us a tetrahedron"), ("rms_at", "rms at frames"), ("rms_between", "rms between"), ("max_between", "max between"),
          ("volume_error_between", "volume")]

@@ -109,9 +109,9 @@ def check_stiff_triangles(result):
         assert row["exit"] == 0, row["fault"]
         assert row["tets"] > 0 and row["ms_p50"] > 0
         if row["case"] != "noise":
-            assert row["rmse_255"] < 0.5, row
-        if "renderers_apart_255" in row:
-            assert row["renderers_apart_255"] < 0.5, row
+            assert row["rmse_255"] < 0.2, row
+        if "renderers_apart_255" in row:  # of light on black at full contrast
+            assert row["renderers_apart_255"] < 1, row
     noise = {r["value"]: r["rmse_255"] for r in rows if r["case"] == "noise"}
     assert noise[1] > noise[0.1] > 0.5, noise
 
@@ -122,10 +122,11 @@ def check_slim(result):
     assert {r["order"] for r in ours} == {"passes", "multichoice", "heap"} and {r["metric"] for r in ours} == {"slice", "paper"}
     for row in ours:
         assert row["exit"] == 0, row["fault"]
-        assert row["unit"] == "cells" and 0 < row["tets"] <= max(1.001 * row["ratio"] * row["tets_in"], 2000), row
+        assert row["unit"] == "cells" and 0 < row["tets"] <= max(1.001 * row["ratio"], 0.03) * row["tets_in"], row
         for kind in ("at", "between"):
             assert 0 < row["rms_" + kind] <= row["p99_" + kind] <= row["max_" + kind] < 16, row
-            assert row["volume_error_" + kind] < 0.5, row
+            assert row.get("volume_error_" + kind, 0) < 0.5, row
+        assert 1 <= row["closed_slices"] <= 4, row
         assert row["peak_bytes"] > 0 and row["seconds_work"] >= row["seconds_simplify"] > 0
     assert {r["choices"] for r in ours if r["order"] == "multichoice" and r["ratio"] == 0.1} == {2, 8, 32}
     for order in ("passes", "heap"):

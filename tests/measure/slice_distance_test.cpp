@@ -38,7 +38,7 @@ Mesh sheet(const std::vector<float>& heights) {
 }
 
 SplitDistance judged(const Mesh& mesh, const Mesh& reference, const SliceTimes& times, const SliceFrame& where = {}) {
-  outofcore::Executor executor(2);
+  outofcore::ThreadExecutor executor(2);
   outofcore::Progress progress;
   SliceJudge judge(slicesOf(reference.positions, reference.tets, 4), times, where, {1e-6, 1000, 100'000});
   return judge.judge(slicesOf(mesh.positions, mesh.tets, 4), executor, progress);

@@ -15,9 +15,10 @@ void addDistance(const measure::SliceDistance& distance, const std::string& kind
   row["rms_" + kind] = number(distance.rms / unit);
   row["p99_" + kind] = number(distance.p99 / unit);
   row["max_" + kind] = number(distance.max / unit);
-  const bool closed = std::any_of(distance.slices.begin(), distance.slices.end(),
-                                  [](const measure::SliceDifference& slice) { return slice.volume_reference != 0; });
-  if (closed) row["volume_error_" + kind] = number(distance.volume_error);
+  const auto closed = std::count_if(distance.slices.begin(), distance.slices.end(),
+                                    [](const measure::SliceDifference& slice) { return slice.volume_reference != 0; });
+  if (closed > 0) row["volume_error_" + kind] = number(distance.volume_error);
+  row["closed_slices"] = row.value("closed_slices", std::int64_t{0}) + closed;
 }
 
 void judgeSlices(Bench& bench, const measure::SliceSource& slices, measure::SliceJudge& judge, double unit, Row& row) {

@@ -37,8 +37,11 @@ const std::vector<std::string> kColumns{"program",
                                         "max_between",
                                         "volume_error_at",
                                         "volume_error_between",
+                                        "closed_slices",
                                         "load",
                                         "absent"};
+
+constexpr std::uint64_t kUsualChoices = 8;  // of the series that stands beside the other orders
 
 // A hypermesh to simplify, and what its errors are told in.
 struct Input {
@@ -56,9 +59,9 @@ struct Kind {
 
 std::string nameOf(const Kind& kind) {
   std::string name = kind.order;
-  if (kind.choices) name += fmt::format(" of {}", *kind.choices);
+  if (kind.choices && *kind.choices != kUsualChoices) name += fmt::format(" of {}", *kind.choices);
   if (kind.threads) name += fmt::format(", {} thread{}", *kind.threads, *kind.threads == 1 ? "" : "s");
-  return kind.metric == "slice" ? name : name + ", metric " + kind.metric;
+  return kind.metric == "slice" ? name : name + ", " + kind.metric;
 }
 
 void run(const ChildRun& child, const std::string& input) {
@@ -160,8 +163,8 @@ Plot plotOf(const Bench& bench, const Input& input, Plot plot, const std::string
     if (row.at("sweep") != "qslim " + input.name || !row.contains(x) || !row.contains(y)) continue;
     if (!row.at(x).is_number() || !row.at(y).is_number()) continue;
     const bool of_choices = row.contains("choices");
-    if (choices && !of_choices) continue;
-    if (!choices && of_choices && row.at("choices") != 8) continue;
+    if (choices && (!of_choices || row.at("metric") != "slice")) continue;
+    if (!choices && of_choices && row.at("choices") != kUsualChoices) continue;
     const auto ratio = row.at("ratio").get<double>();
     const std::string name = choices ? fmt::format("to {:g} %", 100 * ratio) : row.value("series", std::string("?"));
     auto found = std::find_if(plot.series.begin(), plot.series.end(), [&](const Series& s) { return s.name == name; });
@@ -170,6 +173,11 @@ Plot plotOf(const Bench& bench, const Input& input, Plot plot, const std::string
                               : name == "VTK" || plot.series.front().name == name ? fmt::format("{:g} %", 100 * ratio)
                                                                                   : "";
     found->points.push_back({row.at(x).get<double>(), row.at(y).get<double>(), label});
+  }
+  for (Series& one : plot.series) {
+    if (choices)
+      std::sort(one.points.begin(), one.points.end(),
+                [](const PlotPoint& a, const PlotPoint& b) { return std::stoul(a.label) < std::stoul(b.label); });
   }
   return plot;
 }
@@ -182,7 +190,8 @@ Section sectionOf(const Bench& bench, const Input& input) {
       "{} tetrahedra, simplified by three orders of collapses under two metrics. Slices of the result against those of "
       "the input, both ways (the worse counts), at frames and between them; rms is the mean over the times, p99 and "
       "max "
-      "the largest; volumes, where slices are closed, relative. seconds work: reading, simplifying, writing. VTK: its "
+      "the largest; volumes, where both slices are closed and wound one way, relative. seconds work: reading, "
+      "simplifying, writing. VTK: its "
       "quadric filter on (x, y, z; t), seconds of the filter alone, one thread.",
       input.tets);
   section.plots = {
@@ -219,7 +228,7 @@ std::vector<std::pair<Kind, std::vector<double>>> planOf(bool full) {
   for (const char* metric : {"slice", "paper"}) {
     for (const char* order : {"passes", "multichoice", "heap"}) {
       const bool chooses = std::string(order) == "multichoice";
-      plan.push_back({{order, metric, chooses ? std::optional<std::uint64_t>(8) : std::nullopt, {}}, ratios});
+      plan.push_back({{order, metric, chooses ? std::optional(kUsualChoices) : std::nullopt, {}}, ratios});
     }
   }
   plan.push_back({{"passes", "slice", {}, 1}, full ? ratios : few});

@@ -45,7 +45,7 @@ ChildRun draw(Bench& bench, const std::string& renderer, const std::string& fold
   // Away from a frame, at one, and between two.
   return bench.programs.run(
       "tet4d-play",
-      {"stiff.t4d", "--offscreen", "--renderer", renderer, "--size", "200x200", "--camera", "camera.json", "--samples",
+      {"stiff.t4d", "--offscreen", "--renderer", renderer, "--size", "128x128", "--camera", "camera.json", "--samples",
        "4", "--times", "1.5f:4.5f:1.5f", "-o", folder + "/%05d.png", "-f", "-q", "--stats", "play.json"},
       bench.work + "/play.json");
 }

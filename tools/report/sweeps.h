@@ -41,7 +41,7 @@ struct Ball {
 // Gaussians on closed paths, that meet and part; the isosurface at 0.5 is closed, but for what leaves the cube. The
 // field of scripts/bench/mc.py in kind: its topology changes, which the ball's does not.
 struct Blobs {
-  std::size_t samples = 33, frames = 12;
+  std::size_t samples = 27, frames = 10;
   void write(const std::string& path) const;
 };
 
