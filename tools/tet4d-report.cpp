@@ -1,7 +1,8 @@
+// tet4d-report: error against run time, as tables, plots and one page; and single comparisons.
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-// tet4d-report: error against run time, as tables, plots and one page; and single comparisons.
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -22,8 +23,9 @@ struct Options {
   std::vector<std::string> frames;
   std::string data, iso = "0.5", program = "mc";
   report::PlayOptions play;
+  report::SlimOptions slim;
   std::string folder, bin = report::ownFolder(), commit;
-  bool full = false, quick = false, resume = false;
+  bool full = false, quick = false, resume = false, no_peer = false;
   std::uint64_t repeat = 1;
   report::CompareOptions compare;
 };
@@ -65,7 +67,7 @@ int sweep(cli::Session& session, const Options& options, const std::string& titl
   const std::string& work = made.path();
   const report::Programs programs(options.bin.empty() ? "" : fs::absolute(options.bin).string(), work);
   report::Rows rows(options.folder, report::contextOf(options.commit, options.bin, programs), options.resume);
-  report::Bench bench{session, programs, rows, work, options.full, options.repeat};
+  report::Bench bench{session, programs, rows, work, options.full, options.repeat, !options.no_peer};
   const std::vector<report::Section> sections = sweeps(bench);
   report::writePage(options.folder, title, sections, rows);
   std::uint64_t failed = 0;
@@ -92,6 +94,11 @@ void addSweepOptions(cli::Command& command, Options& o, const char* folder) {
       .common({cli::kThreads, cli::kStats});
 }
 
+void addPeerOption(cli::Command& command, Options& o) {
+  command.flag("--no-peer", "leave out the rows of VTK; where python3-vtk9 is not installed they say so anyway",
+               &o.no_peer);
+}
+
 void addPlayOptions(cli::Command& command, report::PlayOptions& play) {
   command
       .option("--vary", "OPTION=V,V",
@@ -99,9 +106,14 @@ void addPlayOptions(cli::Command& command, report::PlayOptions& play) {
               "renderer=gl,cpu and samples=1,4,9",
               &play.vary)
       .option("--size", "WxH", "of a picture, pixels", cli::Extent{&play.size})
-      .option("--times", "A:B:STEP", "of the pictures; default: 17 over the file, 65 with --full", &play.times)
-      .option("--camera", "FILE", "as of tet4d-play", &play.camera)
-      .option("--orbit", "DEG", "turn of the camera over the film", &play.orbit_degrees);
+      .option("--times", "A:B:STEP", "of the pictures; default: 5 over the file, 17 with --full; 17 and 65 of one view",
+              &play.times)
+      .option("--views", "WHICH",
+              "from the faces and corners of a cube about the data, 14 films; or one film as the camera is",
+              cli::Choice{&play.views, {"cube", "one"}})
+      .option("--camera", "FILE", "as of tet4d-play; views of a cube take its distance and lights", &play.camera)
+      .option("--orbit", "DEG", "turn of the camera over a film; default: 20 with --views one, else 0",
+              &play.orbit_degrees);
 }
 
 void addCompare(cli::Command& command, report::CompareOptions& o) {
@@ -112,11 +124,29 @@ std::vector<std::string> framesOf(const Options& o) {
   return o.data.empty() ? o.frames : std::vector<std::string>{o.data};
 }
 
+int runStiff(cli::Session& session, const Options& options) {
+  using Sweep = report::Section (*)(report::Bench&);
+  struct Part {
+    const char *name, *title;
+    Sweep sweep;
+  };
+  static constexpr std::array<Part, 3> kParts{{{"mc", "tet4d-mc: stiff cases", report::sweepStiff},
+                                               {"dyntri", "dyntri-build: stiff cases", report::sweepStiffTriangles},
+                                               {"qslim", "hyper-qslim: stiff cases", report::sweepStiffSlim}}};
+  for (const Part& part : kParts) {
+    if (options.program != part.name) continue;
+    return sweep(session, options, part.title,
+                 [&](report::Bench& bench) { return std::vector<report::Section>{part.sweep(bench)}; });
+  }
+  throw Error(FaultCode::kUsage, "", "'" + options.program + "'",
+              "has no sweep of stiff cases; mc, dyntri and qslim have", "tet4d-report stiff mc");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string program = "tet4d-report";
-  Options mc_options, stiff_options, play_options, all_options, distance_options, picture_options;
+  Options mc_options, stiff_options, slim_options, play_options, all_options, distance_options, picture_options;
 
   cli::Command mc(program, "Error and run time of tet4d-mc over strides in space and time.");
   mc.subcommand("mc")
@@ -124,13 +154,25 @@ int main(int argc, char** argv) {
       .example("tet4d-report mc frames/*.nrrd --iso 0.5 --full", "and on frames of your own, against all of them")
       .positional("FRAMES", "volumes in time order, or a directory of them", &mc_options.frames, true)
       .option("--iso", "V", "isovalue of the frames", &mc_options.iso);
+  addPeerOption(mc, mc_options);
   addSweepOptions(mc, mc_options, "report-mc");
 
   cli::Command stiff(program, "Error and run time over aspect ratios, far origins, units of time and noise.");
   stiff.subcommand("stiff")
       .example("tet4d-report stiff mc --full", "aspect 1-1e6, origin 1-1e8, time unit 1e-9-1e9, noise")
-      .positional("PROGRAM", "mc", &stiff_options.program);
+      .example("tet4d-report stiff dyntri", "the same cases through dyntri-build, to pictures")
+      .example("tet4d-report stiff qslim", "… simplified; slow, fast and no motion, flat pieces of growing size")
+      .positional("PROGRAM", "mc, dyntri or qslim", &stiff_options.program);
   addSweepOptions(stiff, stiff_options, "report-stiff");
+
+  cli::Command slim(program, "Error and run time of hyper-qslim over orders, metrics and ratios, beside VTK's filter.");
+  slim.subcommand("qslim")
+      .example("tet4d-report qslim --folder report", "on blobs that meet and part")
+      .example("tet4d-report qslim drop.t4h frames/ cloth/sequence.json --iso 0.5 --full", "and on data of your own")
+      .positional("INPUT", "hypermesh (.t4h), directory of frames, or mesh sequence", &slim_options.slim.inputs, true)
+      .option("--iso", "V", "isovalue of frames", &slim_options.slim.iso);
+  addPeerOption(slim, slim_options);
+  addSweepOptions(slim, slim_options, "report-qslim");
 
   cli::Command play(program, "Time and error of tet4d-play's pictures over combinations of its options.");
   play.subcommand("play")
@@ -139,13 +181,14 @@ int main(int argc, char** argv) {
   addPlayOptions(play, play_options.play);
   addSweepOptions(play, play_options, "report-play");
 
-  cli::Command all(program, "All sweeps on one page.");
+  cli::Command all(program, "The sweeps of tet4d-mc and tet4d-play on one page.");
   all.subcommand("all")
       .example("tet4d-report all drop.t4d --data frames/ --iso 0.5", "ball, frames, stiff cases, pictures")
       .positional("FILE", "dynamic triangles (.t4d) to play", &all_options.play.inputs, true)
       .option("--data", "DIR", "frames of a volume for tet4d-mc", &all_options.data)
       .option("--iso", "V", "isovalue of the frames", &all_options.iso);
   addPlayOptions(all, all_options.play);
+  addPeerOption(all, all_options);
   addSweepOptions(all, all_options, "report");
 
   report::CompareOptions &distances = distance_options.compare, &pictures = picture_options.compare;
@@ -172,14 +215,11 @@ int main(int argc, char** argv) {
                                           return sections;
                                         });
                          }});
-  suite.parts.push_back({&stiff, [&](cli::Session& session) {
-                           if (stiff_options.program != "mc") {
-                             throw Error(FaultCode::kUsage, "", "'" + stiff_options.program + "'",
-                                         "has no sweep of stiff cases; mc has", "tet4d-report stiff mc");
-                           }
-                           return sweep(session, stiff_options, "tet4d-mc: stiff cases", [&](report::Bench& bench) {
-                             return std::vector<report::Section>{report::sweepStiff(bench)};
-                           });
+  suite.parts.push_back({&stiff, [&](cli::Session& session) { return runStiff(session, stiff_options); }});
+  suite.parts.push_back({&slim, [&](cli::Session& session) {
+                           return sweep(
+                               session, slim_options, "hyper-qslim: error against run time",
+                               [&](report::Bench& bench) { return report::sweepSlim(bench, slim_options.slim); });
                          }});
   suite.parts.push_back({&play, [&](cli::Session& session) {
                            return sweep(

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,5 +17,26 @@ struct Picture {
 // Any PNG, as 8-bit RGBA (16-bit channels lose their low bytes). Throws Error: kIo if it cannot be read, kBadInput for
 // what is no PNG, is damaged or has more than 2^28 pixels. Memory: the file and 4 bytes a pixel.
 Picture readPng(const std::string& path);
+
+// The same row by row, for pictures of any size. Memory: a row and the decoder's 100 KiB; of an interlaced PNG, whose
+// rows are not complete before its end, the whole picture as above. Throws as above; kBadInput for rows of more than
+// 2^26 pixels.
+class PngRows {
+ public:
+  explicit PngRows(const std::string& path);
+  PngRows(PngRows&&) noexcept;
+  PngRows& operator=(PngRows&&) noexcept;
+  ~PngRows();
+
+  std::uint32_t width() const;
+  std::uint32_t height() const;
+  const std::string& path() const;
+  // The next row from the top: 4 * width bytes, good until the next call. Call it `height` times at most.
+  std::span<const std::uint8_t> next();
+
+ private:
+  struct Decoder;
+  std::unique_ptr<Decoder> decoder_;
+};
 
 }  // namespace tet4d::exchange

@@ -27,22 +27,41 @@ struct PictureError {
 // Both of one size, at least a pixel; throws Error kUsage otherwise. O(pixels).
 PictureError comparePictures(const PictureView& picture, const PictureView& reference);
 
-// Flicker of a film against its exact film: with e_k the difference of pictures k, the rms over pixels, colours and k
-// of e_{k-1} - 2 e_k + e_{k+1}. An error that stays, or changes evenly, costs nothing; popping does. 0 below three
-// pictures. Holds two pictures as float.
-class Flicker {
+// The same row by row, for pictures of any size.
+class PictureMeter {
  public:
-  // Pictures in time order, all of one size; throws Error kUsage otherwise.
-  void add(const PictureView& picture, const PictureView& reference);
-  double rms() const;
-  double max() const { return max_; }
+  // 4 * width bytes each, the same width for every row; throws Error kUsage otherwise.
+  void addRow(std::span<const std::uint8_t> row, std::span<const std::uint8_t> reference);
+  PictureError result() const;
 
  private:
-  std::array<std::vector<float>, 2> last_;  // e_{k-1}, e_k
-  std::size_t pictures_ = 0;
+  PictureError error_;
   CompensatedSum squares_;
-  std::uint64_t terms_ = 0;
-  double max_ = 0;
+  std::size_t width_ = 0;
+  std::uint32_t rows_ = 0;
+};
+
+// A film against its exact film, row by row: the error of all pictures, and flicker. With e_k the difference of
+// pictures k, flicker is the rms over pixels, colours and k of e_{k-1} - 2 e_k + e_{k+1}. An error that stays, or
+// changes evenly, costs nothing; popping does. 0 below three pictures. Memory: a row of floats a picture.
+class FilmMeter {
+ public:
+  using Row = std::span<const std::uint8_t>;
+  // The same row of all pictures in time order, and of the exact ones, 4 * width bytes each. counted: the first so many
+  // (0 or 2) were the last of an earlier part of the film: they serve the flicker and are not counted again.
+  void addRow(std::span<const Row> pictures, std::span<const Row> references, std::size_t counted = 0);
+  double rmse() const;
+  double max() const { return max_; }
+  double flicker() const;
+  double flickerMax() const { return flicker_max_; }
+
+ private:
+  void addBends(std::size_t pictures);
+
+  std::vector<std::vector<float>> errors_;  // of this row, a picture each
+  CompensatedSum squares_, bends_;
+  std::uint64_t terms_ = 0, bend_terms_ = 0;
+  double max_ = 0, flicker_max_ = 0;
 };
 
 }  // namespace tet4d::measure

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "formats/core/coordinates.h"
 #include "libpreprocess/exchange/slice_hypermesh.h"
@@ -11,11 +13,11 @@
 namespace tet4d::measure {
 namespace {
 
-// A slice in world units, relative to the domain's corner: a far origin costs nothing.
-std::vector<Point3> toLengths(const SliceMesh& slice, const AffineMap& map, const Bounds4f& domain) {
+// A slice in the units of the map, relative to the domain's corner: a far origin costs nothing.
+std::vector<Point3> toLengths(const SliceMesh& slice, const SliceFrame& where) {
   std::vector<Point3> points;
   points.reserve(slice.positions.size());
-  const std::array<double, 3> corner{domain.min.x, domain.min.y, domain.min.z};
+  const auto& [map, corner] = where;
   for (const Vec3f& p : slice.positions) {
     const std::array<double, 3> index{p.x - corner[0], p.y - corner[1], p.z - corner[2]};
     Point3 world{};
@@ -47,18 +49,48 @@ std::vector<double> sampleFrames(const hypermesh::File& reference, std::size_t c
 SliceDistance compareSlices(const hypermesh::File& mesh, const hypermesh::File& reference,
                             const std::vector<double>& frames, const DistanceOptions& options,
                             outofcore::Executor& executor, outofcore::Progress& progress) {
+  const auto& [min, max] = reference.header().domain;
+  return compareSlices(slicesOf(mesh), slicesOf(reference), {reference.header().index_to_world, {min.x, min.y, min.z}},
+                       frames, options, executor, progress);
+}
+
+SliceTimes sampleTimes(const Bounds4f& domain, std::size_t count) {
+  const double first = domain.min.t, last = domain.max.t;
+  SliceTimes times;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double at = first + (last - first) * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const double frame = std::round(at), between = std::floor(at) + 0.37;
+    if (frame > first && frame < last && (times.at.empty() || frame > times.at.back())) times.at.push_back(frame);
+    if (between < last && (times.between.empty() || between > times.between.back())) times.between.push_back(between);
+  }
+  return times;
+}
+
+SliceSource slicesOf(const hypermesh::File& mesh) {
+  return [&mesh](double frame) { return exchange::sliceHypermesh(mesh, frame); };
+}
+
+SliceSource slicesOf(std::span<const Vec4f> positions, std::span<const hypermesh::Tet> tets, float last_t) {
+  return [=](double frame) {
+    SliceMesh slice;
+    sliceTets(tets, positions, {}, static_cast<float>(frame), last_t, slice);
+    return slice;
+  };
+}
+
+SliceDistance compareSlices(const SliceSource& mesh, const SliceSource& reference, const SliceFrame& where,
+                            const std::vector<double>& frames, const DistanceOptions& options,
+                            outofcore::Executor& executor, outofcore::Progress& progress) {
   SliceDistance result;
-  const AffineMap& map = reference.header().index_to_world;
   double largest_volume = 0, largest_volume_error = 0;
   progress.phase("measure", frames.size());
   for (const double frame : frames) {
-    const SliceMesh a = exchange::sliceHypermesh(mesh, frame), b = exchange::sliceHypermesh(reference, frame);
-    const std::vector<Point3> pa = toLengths(a, map, reference.header().domain);
-    const std::vector<Point3> pb = toLengths(b, map, reference.header().domain);
+    const SliceMesh a = mesh(frame), b = reference(frame);
+    const std::vector<Point3> pa = toLengths(a, where), pb = toLengths(b, where);
     const SurfaceDistance d = surfaceDistance({pa, a.triangles}, {pb, b.triangles}, options, executor);
     SliceDifference slice{frame, d.rms(), d.p99(), d.max(), 0, 0, a.triangles.size(), b.triangles.size()};
-    const SliceMeasures ma = measureSlice(a.positions, a.triangles, map);
-    const SliceMeasures mb = measureSlice(b.positions, b.triangles, map);
+    const SliceMeasures ma = measureSlice(a.positions, a.triangles, where.map);
+    const SliceMeasures mb = measureSlice(b.positions, b.triangles, where.map);
     if (ma.closed() && mb.closed()) {
       slice.volume = ma.volume, slice.volume_reference = mb.volume;
       largest_volume = std::max(largest_volume, std::abs(mb.volume));
@@ -72,6 +104,20 @@ SliceDistance compareSlices(const hypermesh::File& mesh, const hypermesh::File& 
   }
   result.volume_error = largest_volume > 0 ? largest_volume_error / largest_volume : 0;
   return result;
+}
+
+SliceJudge::SliceJudge(SliceSource reference, SliceTimes times, SliceFrame where, DistanceOptions options)
+    : times_(std::move(times)), where_(where), options_(options) {
+  std::map<double, SliceMesh> slices;
+  for (const auto* frames : {&times_.at, &times_.between}) {
+    for (const double frame : *frames) slices.emplace(frame, reference(frame));
+  }
+  reference_ = [kept = std::move(slices)](double frame) { return kept.at(frame); };
+}
+
+SplitDistance SliceJudge::judge(const SliceSource& mesh, outofcore::Executor& executor, outofcore::Progress& progress) {
+  return {compareSlices(mesh, reference_, where_, times_.at, options_, executor, progress),
+          compareSlices(mesh, reference_, where_, times_.between, options_, executor, progress)};
 }
 
 }  // namespace tet4d::measure

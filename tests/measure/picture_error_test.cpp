@@ -55,21 +55,29 @@ TEST(PictureError, SizesThatDifferAreNamed) {
   }
 }
 
-TEST(Flicker, IsTheSecondDifferenceOfTheError) {
+// A film of one row.
+FilmMeter filmOf(const std::vector<Bytes>& pictures, const std::vector<Bytes>& references) {
+  FilmMeter meter;
+  meter.addRow(std::vector<FilmMeter::Row>(pictures.begin(), pictures.end()),
+               std::vector<FilmMeter::Row>(references.begin(), references.end()));
+  return meter;
+}
+
+TEST(FilmMeter, FlickerIsTheSecondDifferenceOfTheError) {
   const Bytes black = filled(4, 0), white = filled(4, 255);
-  Flicker constant, popping, exact;
-  for (int k = 0; k < 6; ++k) {
-    const Bytes& moving = k % 2 == 0 ? white : black;
-    constant.add({2, 2, white}, {2, 2, black});
-    popping.add({2, 2, k == 2 ? white : black}, {2, 2, black});
-    exact.add({2, 2, moving}, {2, 2, moving});
-  }
-  EXPECT_EQ(constant.rms(), 0) << "an error that stays is no flicker";
-  EXPECT_EQ(exact.rms(), 0) << "what the reference does is no flicker";
+  std::vector<Bytes> blacks(6, black), whites(6, white), popping(6, black), moving(6, black);
+  popping[2] = white;
+  for (std::size_t k = 0; k < 6; k += 2) moving[k] = white;
+  EXPECT_EQ(filmOf(whites, blacks).flicker(), 0) << "an error that stays is no flicker";
+  EXPECT_DOUBLE_EQ(filmOf(whites, blacks).rmse(), 1);
+  EXPECT_EQ(filmOf(moving, moving).flicker(), 0) << "what the reference does is no flicker";
   // Second differences of (0 0 1 0 0 0): 1, -2, 1, 0.
-  EXPECT_NEAR(popping.rms(), std::sqrt(6.0 / 4), 1e-12);
-  EXPECT_DOUBLE_EQ(popping.max(), 2);
-  EXPECT_EQ(Flicker().rms(), 0);
+  const FilmMeter pop = filmOf(popping, blacks);
+  EXPECT_NEAR(pop.flicker(), std::sqrt(6.0 / 4), 1e-12);
+  EXPECT_DOUBLE_EQ(pop.flickerMax(), 2);
+  EXPECT_NEAR(pop.rmse(), std::sqrt(1.0 / 6), 1e-12);
+  EXPECT_EQ(FilmMeter().flicker(), 0);
+  EXPECT_THROW(filmOf({black, filled(3, 0)}, {black, black}), Error);
 }
 
 TEST(FieldError, MaxRmsAndWhatIsUnlike) {

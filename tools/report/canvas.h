@@ -7,7 +7,7 @@
 
 namespace tet4d::report {
 
-inline constexpr double kPlotWidth = 640, kPlotHeight = 420;
+inline constexpr double kPlotWidth = 690, kPlotHeight = 420;
 
 enum class Anchor { kStart, kMiddle, kEnd };
 

@@ -6,9 +6,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "libpreprocess/exchange/read_png.h"
 #include "libpreprocess/exchange/surface_source.h"
-#include "libpreprocess/measure/picture_error.h"
+#include "libpreprocess/measure/picture_files.h"
 #include "libpreprocess/measure/surface_distance.h"
 #include "tools/report/rows.h"
 
@@ -67,9 +66,7 @@ int compareSurfaces(cli::Session& session, const CompareOptions& options) {
 }
 
 int comparePngs(cli::Session& session, const CompareOptions& options) {
-  const exchange::Picture a = exchange::readPng(options.a), b = exchange::readPng(options.b);
-  const measure::PictureError error =
-      measure::comparePictures({a.width, a.height, a.rgba}, {b.width, b.height, b.rgba});
+  const measure::PictureError error = measure::comparePictureFiles(options.a, options.b);
   session.stopProgress();
   session.stats().error("rmse", error.rmse);
   session.stats().error("max", error.max);

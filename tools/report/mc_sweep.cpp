@@ -10,6 +10,7 @@
 #include "formats/container.h"
 #include "libpreprocess/error.h"
 #include "libpreprocess/outofcore/output_file.h"
+#include "tools/report/peer.h"
 #include "tools/report/slice_errors.h"
 #include "tools/report/sweeps.h"
 
@@ -18,10 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kColumns{"space_stride",
+const std::vector<std::string> kColumns{"program",
+                                        "space_stride",
                                         "time_stride",
                                         "samples",
                                         "tets",
+                                        "triangles",
                                         "seconds_wall",
                                         "seconds_cpu",
                                         "samples_per_second",
@@ -38,7 +41,8 @@ const std::vector<std::string> kColumns{"space_stride",
                                         "area_error_between",
                                         "volume_error_at",
                                         "volume_error_between",
-                                        "load"};
+                                        "load",
+                                        "absent"};
 
 // The strides of a sweep, and the frames measured at and between.
 struct Strides {
@@ -95,10 +99,7 @@ void runOne(Bench& bench, const Job& job, const Strides& strides, std::size_t sp
   if (space > 1) words.insert(words.end(), {"--stride", std::to_string(space)});
   if (time > 1) words.insert(words.end(), {"--time-stride", std::to_string(time)});
   Row row = beginRow(job.sweep, job.input, job.digest, "tet4d-mc", words);
-  if (const Row* earlier = bench.rows.find(row)) {
-    bench.rows.add(*earlier);
-    return;
-  }
+  if (bench.rows.take(row)) return;
   words.insert(words.end(), {"-o", "X.t4h", "-f", "-q", "--stats", "stats.json"});
   const ChildRun run = bench.programs.median("tet4d-mc", words, bench.work + "/stats.json", bench.repeat);
   row["space_stride"] = space;
@@ -112,6 +113,49 @@ void runOne(Bench& bench, const Job& job, const Strides& strides, std::size_t sp
   }
   std::error_code ignored;
   fs::remove(bench.work + "/X.t4h", ignored);
+  bench.rows.add(std::move(row));
+}
+
+// The surfaces of a frame each that VTK makes of the ball at a stride: between frames a sequence of them shows the one
+// before.
+void runPeerOnBall(Bench& bench, const Ball& ball, const Job& job, const Strides& strides, std::size_t space) {
+  Ball coarse = ball;
+  coarse.samples = (ball.samples - 1) / space + 1;
+  if ((coarse.samples - 1) * space + 1 != ball.samples) return;
+  const std::string name = fmt::format("ball-{}.f32", space);
+  std::vector<std::string> words{"isosurfaces", name, std::to_string(coarse.samples), "0", "surface"};
+  std::vector<std::pair<double, std::size_t>> wanted;  // the time measured, the frame shown
+  for (const double frame : strides.at(ball.frames)) wanted.emplace_back(frame, static_cast<std::size_t>(frame));
+  const std::size_t at = wanted.size();
+  for (const double frame : strides.between(ball.frames, 1))
+    wanted.emplace_back(frame, static_cast<std::size_t>(std::floor(frame)));
+  for (const auto& [time, shown] : wanted) words.push_back(std::to_string(shown));
+  Row row = beginRow("ball", job.input, job.digest, "vtkFlyingEdges3D", words);
+  if (bench.rows.take(row)) return;
+  coarse.write(bench.work + "/" + name);
+  const PeerRun run = runPeer(bench.programs, words);
+  row["space_stride"] = space;
+  row["time_stride"] = 1;
+  addPeer(row, run);
+  if (run.absent.empty() && run.child.exit_code == 0) {
+    const double step = 1 / static_cast<double>(coarse.samples - 1), last = static_cast<double>(ball.frames - 1);
+    row["samples"] = coarse.samples * coarse.samples * coarse.samples * ball.frames;
+    row["triangles"] = run.number("triangles");
+    SliceErrors errors[2];
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      const double time = wanted[k].first / last;
+      const PeerSurface surface = readPeerSurface(fmt::format("{}/surface-{}", bench.work, wanted[k].second), step);
+      const measure::OneWayDistance d =
+          measure::distanceToSphere({surface.points, surface.triangles}, ball.centreAt(time), ball.radiusAt(time),
+                                    {1e-4 * job.cell, 50'000}, bench.session.executor());
+      errors[k < at ? 0 : 1].add(d.max, d.max_bound, d.p99, d.rms);
+    }
+    errors[0].writeLengths(row, "at", job.cell);
+    errors[1].writeLengths(row, "between", job.cell);
+  }
+  row["load"] = loadAverage();
+  std::error_code ignored;
+  fs::remove(bench.work + "/" + name, ignored);
   bench.rows.add(std::move(row));
 }
 
@@ -132,18 +176,20 @@ std::vector<Plot> plotsOf(const Rows& rows, const std::string& sweep) {
             true,
             true,
             {}};
-  std::map<std::size_t, std::pair<Series, Series>> by_time;
+  std::map<std::string, std::pair<Series, Series>> by_name;
   for (const Row& row : rows.all()) {
     if (row.at("sweep") != sweep || !row.contains("rms_at_cells")) continue;
     const auto stride = row.at("time_stride").get<std::size_t>();
-    auto& [first, second] = by_time[stride];
-    first.name = second.name = "time stride " + std::to_string(stride);
-    const auto value = [&](const char* name) { return row.at(name).is_number() ? row.at(name).get<double>() : 0; };
-    const std::string label = stride == 1 ? fmt::format("1/{}", row.at("space_stride").get<std::size_t>()) : "";
+    const bool ours = row.at("program") == "tet4d-mc";
+    const std::string name = ours ? fmt::format("time stride {}", stride) : "VTK, a surface a frame";
+    auto& [first, second] = by_name[name];
+    first.name = second.name = name;
+    const auto value = [&](const char* key) { return row.at(key).is_number() ? row.at(key).get<double>() : 0; };
+    const std::string label = stride == 1 && ours ? fmt::format("1/{}", row.at("space_stride").get<std::size_t>()) : "";
     first.points.push_back({value("seconds_cpu"), value("rms_between_cells"), label});
     second.points.push_back({value("space_stride"), value("rms_at_cells"), ""});
   }
-  for (auto& [stride, both] : by_time) {
+  for (auto& [series, both] : by_name) {
     time.series.push_back(std::move(both.first));
     step.series.push_back(std::move(both.second));
   }
@@ -192,14 +238,19 @@ Section sweepBall(Bench& bench) {
     const double area = 4 * std::numbers::pi * radius * radius;
     errors.addSize(size.area / area - 1, 3 * size.volume / (area * radius) - 1);
   };
-  runAll(bench, job, stridesOf(bench.full));
-  return {"tet4d-mc: a ball that moves and grows",
-          "Slices of the hypermesh against the sphere they should be, in closed form: the distance of the slice's "
-          "points to "
-          "the sphere at frames that every time stride keeps, and halfway between two kept frames; areas and volumes "
-          "relative to the sphere's. Cells are those of the finest grid. Second order is a slope of two in the second "
-          "plot.",
-          plotsOf(bench.rows, "ball"), kColumns, "ball"};
+  const Strides strides = stridesOf(bench.full);
+  runAll(bench, job, strides);
+  for (const std::size_t space : bench.peer ? strides.space : std::vector<std::size_t>{})
+    runPeerOnBall(bench, ball, job, strides, space);
+  return {
+      "tet4d-mc: a ball that moves and grows",
+      "Slices of the hypermesh against the sphere they should be, in closed form: the distance of the slice's "
+      "points to "
+      "the sphere at frames that every time stride keeps, and halfway between two kept frames; areas and volumes "
+      "relative to the sphere's. Cells are those of the finest grid. Second order is a slope of two in the second "
+      "plot. VTK's rows are a surface a frame by its flying edges, seconds of the filter alone; between frames such a "
+      "sequence shows the surface of the frame before.",
+      plotsOf(bench.rows, "ball"), kColumns, "ball"};
 }
 
 Section sweepFrames(Bench& bench, const std::vector<std::string>& inputs, const std::string& iso) {

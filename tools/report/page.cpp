@@ -107,7 +107,7 @@ void writePage(const std::string& folder, const std::string& title, const std::v
   }
   html += inputsHtml(rows) + "</body>\n</html>\n";
   writeText(folder + "/index.html", html);
-  rows.writeCsv();
+  rows.finish();
 }
 
 }  // namespace tet4d::report

@@ -7,9 +7,9 @@
 
 #include "formats/dynamic_triangles.h"
 #include "libpreprocess/error.h"
-#include "libpreprocess/exchange/read_png.h"
-#include "libpreprocess/measure/picture_error.h"
+#include "libpreprocess/measure/picture_files.h"
 #include "tools/report/sweeps.h"
+#include "tools/report/views.h"
 
 namespace tet4d::report {
 namespace {
@@ -59,13 +59,10 @@ std::vector<std::vector<std::string>> combinations(const std::vector<Varied>& va
   return all;
 }
 
-std::string timesOf(const dyntri::File& file, bool full) {
+std::string timesOf(const dyntri::File& file, int steps) {
   const double first = file.times().front(), last = file.times().back();
-  const int steps = full ? 64 : 16;
   return fmt::format("{}:{}:{}", first, last, (last - first) / steps);
 }
-
-measure::PictureView viewOf(const exchange::Picture& picture) { return {picture.width, picture.height, picture.rgba}; }
 
 std::vector<std::string> picturesIn(const std::string& folder) {
   std::vector<std::string> names;
@@ -74,21 +71,24 @@ std::vector<std::string> picturesIn(const std::string& folder) {
   return names;
 }
 
+// Every view is a film of its own; the worst view shows what the mean over all hides.
 void comparePictures(const std::string& folder, const std::string& exact, Row& row) {
-  const std::vector<std::string> names = picturesIn(folder), references = picturesIn(exact);
-  if (names.size() != references.size() || names.empty()) return;
-  measure::Flicker flicker;
-  double squares = 0, most = 0;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const exchange::Picture picture = exchange::readPng(names[k]), reference = exchange::readPng(references[k]);
-    const measure::PictureError error = measure::comparePictures(viewOf(picture), viewOf(reference));
-    squares += error.rmse * error.rmse;
-    most = std::max(most, error.max);
-    flicker.add(viewOf(picture), viewOf(reference));
+  double squares = 0, bends = 0, most = 0, worst = 0;
+  const std::vector<std::string> views = picturesIn(folder);
+  for (const std::string& view : views) {
+    measure::FilmMeter meter;
+    measure::addFilm(picturesIn(view), picturesIn(exact + "/" + fs::path(view).filename().string()), meter);
+    squares += meter.rmse() * meter.rmse();
+    bends += meter.flicker() * meter.flicker();
+    worst = std::max(worst, meter.rmse());
+    most = std::max(most, meter.max());
   }
-  row["rmse_255"] = number(255 * std::sqrt(squares / static_cast<double>(names.size())));
+  const auto count = static_cast<double>(views.size());
+  row["views"] = views.size();
+  row["rmse_255"] = number(255 * std::sqrt(squares / count));
+  row["rmse_worst_view_255"] = number(255 * worst);
   row["max_255"] = number(255 * most);
-  row["flicker_255"] = number(255 * flicker.rms());
+  row["flicker_255"] = number(255 * std::sqrt(bends / count));
 }
 
 void addFrames(const measure::RunRecord& record, Row& row) {
@@ -117,14 +117,35 @@ std::string listed(const std::vector<Varied>& varied, const std::vector<std::str
 
 struct Player {
   Bench& bench;
-  std::vector<std::string> words;  // of every run
+  std::vector<std::string> words;    // of every run
+  std::vector<std::string> cameras;  // a run each; "" for the player's own
+  std::string cameras_text;          // that tells them from others
+  // Pictures in folder/view-NN/. Seconds and frames of all views together; ends with the first that fails.
   ChildRun run(const std::vector<std::string>& more, const std::string& folder, std::uint64_t repeat) const {
     std::error_code ignored;
     fs::remove_all(bench.work + "/" + folder, ignored);
-    std::vector<std::string> all = words;
-    all.insert(all.end(), more.begin(), more.end());
-    all.insert(all.end(), {"-o", folder + "/%05d.png", "-f", "-q", "--stats", "stats.json"});
-    return bench.programs.median("tet4d-play", all, bench.work + "/stats.json", repeat);
+    ChildRun whole;
+    for (std::size_t k = 0; k < cameras.size(); ++k) {
+      const std::string view = fmt::format("{}/view-{:02}", folder, k);
+      fs::create_directories(bench.work + "/" + view, ignored);
+      std::vector<std::string> all = words;
+      if (!cameras[k].empty()) all.insert(all.end(), {"--camera", cameras[k]});
+      all.insert(all.end(), more.begin(), more.end());
+      all.insert(all.end(), {"-o", view + "/%05d.png", "-f", "-q", "--stats", "stats.json"});
+      ChildRun one = bench.programs.median("tet4d-play", all, bench.work + "/stats.json", repeat);
+      if (one.exit_code != 0) return one;
+      if (k == 0) {
+        whole = std::move(one);
+        continue;
+      }
+      whole.seconds_wall += one.seconds_wall;
+      whole.seconds_cpu += one.seconds_cpu;
+      whole.peak_bytes = std::max(whole.peak_bytes, one.peak_bytes);
+      if (!whole.record || !one.record) continue;
+      whole.record->peak_bytes = std::max(whole.record->peak_bytes, one.record->peak_bytes);
+      whole.record->frames.insert(whole.record->frames.end(), one.record->frames.begin(), one.record->frames.end());
+    }
+    return whole;
   }
 };
 
@@ -135,10 +156,8 @@ void playOne(const Player& player, const std::string& input, const std::string& 
   std::vector<std::string> words = player.words;
   words.insert(words.end(), more.begin(), more.end());
   Row row = beginRow("play", input, digest, "tet4d-play", words);
-  if (const Row* earlier = player.bench.rows.find(row)) {
-    player.bench.rows.add(*earlier);
-    return;
-  }
+  row["case"] = player.cameras_text;
+  if (player.bench.rows.take(row)) return;
   row["varied"] = listed(varied, values);
   for (std::size_t i = 0; i < varied.size(); ++i) row["option " + varied[i].option] = values[i];
   const ChildRun run = player.run(more, "pictures", player.bench.repeat);
@@ -148,6 +167,19 @@ void playOne(const Player& player, const std::string& input, const std::string& 
     comparePictures(player.bench.work + "/pictures", player.bench.work + "/exact", row);
   }
   player.bench.rows.add(std::move(row));
+}
+
+// The cameras of a file, as `options` ask for them.
+void setCameras(const PlayOptions& options, const std::string& path, const std::string& size, Player& player) {
+  const std::string camera = options.camera.empty() ? "" : fs::absolute(options.camera).string();
+  const std::string which = camera.empty() ? "fitted" : digestOf({camera});
+  if (options.views == "one") {
+    player.cameras = {camera};
+    player.cameras_text = "one view, camera " + which;
+  } else {
+    player.cameras = writeCubeViews(player.bench.programs, path, camera, {"--size", size});
+    player.cameras_text = fmt::format("{} views, camera {}", player.cameras.size(), which);
+  }
 }
 
 // A series for each value of the first option and each input.
@@ -190,12 +222,16 @@ Section sweepPlay(Bench& bench, const PlayOptions& options) {
   for (const std::string& input : options.inputs) {
     const auto file = unwrap(dyntri::File::open(input));
     const std::string path = fs::absolute(input).string(), digest = digestOf({path});
-    Player player{bench,
-                  {path, "--offscreen", "--size", fmt::format("{}x{}", options.size[0], options.size[1]), "--times",
-                   options.times.empty() ? timesOf(file, bench.full) : options.times, "--orbit",
-                   fmt::format("{}", options.orbit_degrees)}};
-    if (!options.camera.empty())
-      player.words.insert(player.words.end(), {"--camera", fs::absolute(options.camera).string()});
+    const std::string size = fmt::format("{}x{}", options.size[0], options.size[1]);
+    const bool one = options.views == "one";
+    const int steps = bench.full ? (one ? 64 : 16) : (one ? 16 : 4);
+    Player player{
+        bench,
+        {path, "--offscreen", "--size", size, "--times", options.times.empty() ? timesOf(file, steps) : options.times,
+         "--orbit", fmt::format("{}", options.orbit_degrees.value_or(one ? 20 : 0))},
+        {},
+        {}};
+    setCameras(options, path, size, player);
     const ChildRun exact = player.run({"--samples", "16"}, "exact", 1);
     if (exact.exit_code != 0) {
       throw Error(FaultCode::kBadInput, input, "", "the exact pictures cannot be drawn: " + exact.fault, "");
@@ -207,12 +243,14 @@ Section sweepPlay(Bench& bench, const PlayOptions& options) {
   }
   return {
       "tet4d-play",
-      "Pictures against those of 16 samples a pixel at full resolution: RMSE in linear light over all pictures, and "
+      "Pictures against those of 16 samples a pixel at full resolution, from the six faces and eight corners of a cube "
+      "(or one view, if asked for): RMSE in linear light over all pictures, that of the worst view, and "
       "flicker, the rms of the second difference in time of the error, in 255ths; ms to draw a picture and read it "
       "back, without writing it.",
       plotsOf(bench.rows, varied, options.inputs.size() > 1),
-      {"input", "varied", "pictures", "ms_p50", "ms_p95", "rmse_255", "max_255", "flicker_255", "drawn",
-       "processed_per_drawn", "touched_bytes", "peak_bytes", "seconds_wall", "seconds_cpu", "load"},
+      {"input", "varied", "views", "pictures", "ms_p50", "ms_p95", "rmse_255", "rmse_worst_view_255", "max_255",
+       "flicker_255", "drawn", "processed_per_drawn", "touched_bytes", "peak_bytes", "seconds_wall", "seconds_cpu",
+       "load"},
       "play"};
 }
 

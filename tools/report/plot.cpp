@@ -13,7 +13,7 @@
 namespace tet4d::report {
 namespace {
 
-constexpr double kLeft = 76, kRight = 130, kTop = 36, kBottom = 56;
+constexpr double kLeft = 76, kRight = 180, kTop = 36, kBottom = 56;
 constexpr const char* kInk = "#333333";
 constexpr const char* kGrid = "#dddddd";
 // Okabe and Ito's colours, which colour-blind readers can tell apart.

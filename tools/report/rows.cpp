@@ -29,13 +29,6 @@ std::string machineText() {
   return name + ", " + std::to_string(cores) + (cores == 1 ? " core" : " cores");
 }
 
-double loadAverage() {
-  std::ifstream file("/proc/loadavg");
-  double load = 0;
-  file >> load;
-  return load;
-}
-
 std::string csvField(const ordered_json& value) {
   if (value.is_null()) return "";
   const std::string text = value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, kReplace);
@@ -47,7 +40,20 @@ std::string csvField(const ordered_json& value) {
 
 constexpr const char* kKeys[] = {"sweep", "input", "digest", "program", "arguments", "case"};
 
+bool sameRun(const Row& a, const Row& b) {
+  return std::all_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) {
+    return a.contains(key) == b.contains(key) && (!a.contains(key) || a.at(key) == b.at(key));
+  });
+}
+
 }  // namespace
+
+double loadAverage() {
+  std::ifstream file("/proc/loadavg");
+  double load = 0;
+  file >> load;
+  return load;
+}
 
 Context contextOf(const std::string& commit, const std::string& bin, const Programs& programs) {
   Context context{commit, machineText()};
@@ -88,26 +94,32 @@ void addRun(Row& row, const ChildRun& run) {
 Rows::Rows(std::string folder, Context context, bool resume)
     : folder_(std::move(folder)), context_(std::move(context)) {
   const std::string path = folder_ + "/runs.jsonl";
+  bool whole = true;  // the last line is
   if (resume) {
     std::ifstream file(path);
     for (std::string line; std::getline(file, line);) {
+      whole = !file.eof();
       Row row = Row::parse(line, nullptr, false);
       if (row.is_object()) earlier_.push_back(std::move(row));
     }
   }
-  if (!std::ofstream(path, std::ios::trunc)) {
+  std::ofstream file(path, resume ? std::ios::app : std::ios::trunc);
+  // What a stopped run left half written stays a line of its own.
+  if (!whole) file << '\n';
+  if (!file.flush())
     throw Error(FaultCode::kIo, path, "", "cannot be written", "name a folder you may write to: --folder report");
-  }
 }
 
-const Row* Rows::find(const Row& begun) const {
-  for (const Row& row : earlier_) {
-    const bool same = std::all_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) {
-      return row.contains(key) == begun.contains(key) && (!row.contains(key) || row.at(key) == begun.at(key));
-    });
-    if (same && row.value("commit", "") == context_.commit && row.value("exit", 1) == 0) return &row;
-  }
-  return nullptr;
+bool Rows::counts(const Row& row) const {
+  return row.value("commit", "") == context_.commit && row.value("exit", 1) == 0 && !row.contains("absent");
+}
+
+bool Rows::take(const Row& begun) {
+  const auto found = std::find_if(earlier_.begin(), earlier_.end(),
+                                  [&](const Row& row) { return counts(row) && sameRun(row, begun); });
+  if (found == earlier_.end()) return false;
+  rows_.push_back(*found);
+  return true;
 }
 
 void Rows::add(Row row) {
@@ -118,6 +130,22 @@ void Rows::add(Row row) {
   if (!file.flush())
     throw Error(FaultCode::kNoSpace, folder_ + "/runs.jsonl", "", "cannot be written", "free some space");
   rows_.push_back(std::move(row));
+}
+
+void Rows::finish() const {
+  writeLines();
+  writeCsv();
+}
+
+void Rows::writeLines() const {
+  outofcore::OutputFile file(folder_ + "/runs.jsonl", true);
+  for (const Row& row : rows_) file.write(row.dump(-1, ' ', false, kReplace) + "\n");
+  for (const Row& row : earlier_) {
+    const auto again = [&](const Row& taken) { return sameRun(row, taken); };
+    if (counts(row) && std::none_of(rows_.begin(), rows_.end(), again))
+      file.write(row.dump(-1, ' ', false, kReplace) + "\n");
+  }
+  file.commit();
 }
 
 void Rows::writeCsv() const {

@@ -23,7 +23,7 @@ void SliceErrors::addSize(double area_error, double volume_error) {
 
 double SliceErrors::rms() const { return slices_ == 0 ? 0 : std::sqrt(squares_ / static_cast<double>(slices_)); }
 
-void SliceErrors::write(Row& row, const std::string& kind, double cell) const {
+void SliceErrors::writeLengths(Row& row, const std::string& kind, double cell) const {
   const auto lengths = [&](const std::string& suffix, double unit) {
     row["rms_" + kind + suffix] = number(rms() / unit);
     row["p99_" + kind + suffix] = number(p99_ / unit);
@@ -32,6 +32,10 @@ void SliceErrors::write(Row& row, const std::string& kind, double cell) const {
   };
   lengths("_cells", cell);
   lengths("", 1);
+}
+
+void SliceErrors::write(Row& row, const std::string& kind, double cell) const {
+  writeLengths(row, kind, cell);
   row["area_error_" + kind] = number(area_);
   row["volume_error_" + kind] = number(volume_);
 }

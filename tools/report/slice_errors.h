@@ -18,6 +18,8 @@ class SliceErrors {
   void addSize(double area_error, double volume_error);
   // "max_<kind>_cells" and so on: lengths divided by `cell`; in world units too, "max_<kind>".
   void write(Row& row, const std::string& kind, double cell) const;
+  // … without area and volume.
+  void writeLengths(Row& row, const std::string& kind, double cell) const;
   double rms() const;
 
  private:
