@@ -47,6 +47,7 @@ void keepSingles(std::vector<std::uint64_t>& items) {
 }  // namespace
 
 bool Collapser::evaluate(std::uint32_t u, std::uint32_t v, Placement& placement) const {
+  if (((mesh_->is_boundary[u] | mesh_->is_boundary[v]) & kLocked) != 0) return false;
   const Walls wu = mesh_->walls[u], wv = mesh_->walls[v], both = wu | wv;
   if (both != wu && both != wv) return false;
   const Vec4f& held = mesh_->positions[both == wu ? u : v];
@@ -55,8 +56,15 @@ bool Collapser::evaluate(std::uint32_t u, std::uint32_t v, Placement& placement)
     if ((both >> (2 * c) & 3u) != 0) fixed.mask |= 1u << c;
   Quadric q = mesh_->quadrics[v].about(difference(mesh_->positions[u], mesh_->positions[v]));
   q.add(mesh_->quadrics[u]);
+  Quadric attributes;
+  if (mesh_->columns.inMetric())
+    q.add(attributes = mesh_->columns.quadric(u, v, mesh_->positions[u], mesh_->positions[v]));
   placement =
       placeVertex(q, mesh_->positions[u], mesh_->positions[v], fixed, rules_.align, rules_.frames, mesh_->space);
+  if (mesh_->columns.inMetric()) {
+    const double length = mesh_->space.extent(difference(mesh_->positions[v], mesh_->positions[u]));
+    limitAttributes(attributes, q.weight, length, difference(placement.at, mesh_->positions[u]), placement);
+  }
   return true;
 }
 
@@ -135,7 +143,7 @@ void Collapser::readBorder(std::uint32_t v, std::vector<Edge>& border) const {
 
 // The same with the boundary coned to one more vertex: its cone over a face of the boundary is a tetrahedron.
 bool Collapser::bordersAllow(std::uint32_t u, std::uint32_t v) {
-  if (mesh_->is_boundary[u] == 0 || mesh_->is_boundary[v] == 0) return true;
+  if ((mesh_->is_boundary[u] & mesh_->is_boundary[v] & kOnBoundary) == 0) return true;
   readBorder(u, border_u_);
   readBorder(v, border_v_);
   const auto touches = [](const std::vector<Edge>& border, std::uint32_t w) {
@@ -249,6 +257,7 @@ std::uint32_t Collapser::collapse(std::uint32_t u, std::uint32_t v, const Vec4f&
   *link = first;
   mesh.tail[u] = last != kNone ? last : tail;
   mesh.head[v] = mesh.tail[v] = kNone;
+  if (!mesh.columns.empty()) mesh.columns.merge(u, v, from_u, from_v, at, mesh.space);
   mesh.quadrics[u] = mesh.quadrics[u].about(difference(at, from_u));
   mesh.quadrics[u].add(mesh.quadrics[v].about(difference(at, from_v)));
   mesh.positions[u] = at;

@@ -12,9 +12,6 @@
 namespace tet4d::qslim4d {
 namespace {
 
-// Where the spatial part of a tetrahedron's normal is below this share of its temporal part, the surface stands almost
-// parallel to the present (births, jumps): a fixed-time distance has no meaning there, and its weight is bounded.
-constexpr double kLeastSlope = 0.05;
 // Of a constraint that holds a free boundary in place.
 constexpr double kBoundaryWeight = 10;
 
@@ -103,11 +100,11 @@ void addBoundaryQuadric(SlimMesh& mesh, const Face& face, std::uint32_t apex, Me
   throw Error(FaultCode::kBadInput, "",
               "triangle " + std::to_string(face[0]) + " " + std::to_string(face[1]) + " " + std::to_string(face[2]),
               "lies in more than two tetrahedra: the mesh is no manifold there",
-              "see tet4d-info --validate for all such places, and mend the mesh");
+              "see tet4d-info --validate for all such places, and mend the mesh, or give --non-manifold keep");
 }
 
 // Marks boundary vertices, and holds what of the boundary is on no wall.
-void findBoundary(SlimMesh& mesh, Metric metric) {
+void findBoundary(SlimMesh& mesh, Metric metric, bool keep_non_manifold) {
   struct Seen {
     Face face;  // ascending
     std::uint32_t apex;
@@ -129,10 +126,10 @@ void findBoundary(SlimMesh& mesh, Metric metric) {
     std::sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.face < b.face; });
     for (std::size_t i = 0, end = 0; i < seen.size(); i = end) {
       while (end < seen.size() && seen[end].face == seen[i].face) ++end;
-      if (end - i > 2) refuseFace(seen[i].face);
-      if (end - i == 2) continue;
+      if (end - i > 2 && !keep_non_manifold) refuseFace(seen[i].face);
+      if (end - i >= 2) continue;
       const Face& face = seen[i].face;
-      for (const std::uint32_t w : face) mesh.is_boundary[w] = 1;
+      for (const std::uint32_t w : face) mesh.is_boundary[w] |= kOnBoundary;
       if ((mesh.walls[face[0]] & mesh.walls[face[1]] & mesh.walls[face[2]]) == 0)
         addBoundaryQuadric(mesh, face, seen[i].apex, metric);
     }
@@ -142,7 +139,7 @@ void findBoundary(SlimMesh& mesh, Metric metric) {
 }  // namespace
 
 SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> tets, const Bounds4f& domain,
-                      const AffineMap& map, Metric metric) {
+                      const AffineMap& map, Metric metric, bool keep_non_manifold) {
   SlimMesh mesh;
   mesh.positions = std::move(positions);
   mesh.tets = std::move(tets);
@@ -154,7 +151,7 @@ SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> 
   mesh.walls.reserve(mesh.positions.size());
   for (const Vec4f& v : mesh.positions) mesh.walls.push_back(wallsOf(v, domain));
   for (const hypermesh::Tet& tet : mesh.tets) addTetQuadric(mesh, tet, metric);
-  findBoundary(mesh, metric);
+  findBoundary(mesh, metric, keep_non_manifold);
   return mesh;
 }
 
