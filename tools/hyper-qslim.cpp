@@ -26,8 +26,7 @@ using qslim::SimplifiedPart;
 
 void tellColumns(cli::Session& session, const hypermesh::File& result, const hypermesh::File& reference,
                  const std::vector<double>& frames) {
-  for (const measure::ColumnDistance& column :
-       measure::compareColumns(result, reference, frames, session.progress())) {
+  for (const measure::ColumnDistance& column : measure::compareColumns(result, reference, frames, session.progress())) {
     session.stats().error("column_" + column.name + "_rms", column.rms);
     session.stats().error("column_" + column.name + "_max", column.max);
     char text[120];
@@ -219,10 +218,11 @@ int main(int argc, char** argv) {
       .option("--ratio", "R", "stop at R times the tetrahedra", &o.ratio)
       .option("--tets", "N", "stop at N tetrahedra", &o.tets)
       .option("--error", "E", "make no collapse whose quadric error is above E, world units; an estimate", &o.error)
-      .option("--max-error", "E",
-              "no slice is farther than E from the input's, world units: a promise, proven at every frame's time and once "
-              "between frames, or the program fails",
-              &o.max_error)
+      .option(
+          "--max-error", "E",
+          "no slice is farther than E from the input's, world units: a promise, proven at every frame's time and once "
+          "between frames, or the program fails",
+          &o.max_error)
       .option("--tries", "N", "how often --max-error may begin again from the input", &o.tries)
       .heading("Simplification")
       .option("--metric", "WHICH", "slice: spatial distance at fixed time; paper: raw 4D normals",
@@ -235,13 +235,15 @@ int main(int argc, char** argv) {
               "a vertex goes to the time of an end or a frame if that costs up to 1 + A times the least; default 0.25",
               &o.align_time)
       .option("--max-star", "N", "most tetrahedra at a vertex that a collapse may leave", &o.most_star)
-      .option("--non-manifold", "WHAT",
-              "where more than two tetrahedra meet in a triangle: refuse the mesh, or keep such places, and vertices whose "
-              "surroundings are no ball, as they are",
-              cli::Choice{&o.non_manifold, {"refuse", "keep"}})
-      .option("--columns", "LIST", "columns to carry over: names, all or none", &o.columns)
+      .option(
+          "--non-manifold", "WHAT",
+          "where more than two tetrahedra meet in a triangle: refuse the mesh, or keep such places, and vertices whose "
+          "surroundings are no ball, as they are",
+          cli::Choice{&o.non_manifold, {"refuse", "keep"}})
+      .option("--columns", "LIST", "columns to carry over, beside those of --attributes: names, all or none", &o.columns)
       .option("--attributes", "LIST",
-              "columns whose change counts as an error: NAME[:WEIGHT],…, all or none; a change by one counts as WEIGHT world "
+              "columns whose change counts as an error: NAME[:WEIGHT],…, all or none; a change by one counts as WEIGHT "
+              "world "
               "units, without it the column's whole range counts as ten cells",
               &o.attributes)
       .heading("Output")

@@ -44,8 +44,8 @@ class Comparer {
       const TriangleTree::Nearest nearest = tree.nearest(from_points_[v], hint);
       hint = nearest.triangle;
       const auto& triangle = to_.mesh.triangles[tree.original(nearest.triangle)];
-      const auto weights = barycentric(from_points_[v], to_points_[triangle[0]], to_points_[triangle[1]],
-                                       to_points_[triangle[2]]);
+      const auto weights =
+          barycentric(from_points_[v], to_points_[triangle[0]], to_points_[triangle[1]], to_points_[triangle[2]]);
       for (std::size_t c = 0; c < distances.size(); ++c) compare(v, triangle, weights, c, distances[c], squares[c]);
     }
   }

@@ -16,8 +16,8 @@ namespace {
 // say no more of it.
 constexpr double kLeastExtent = 1e-6;
 
-// The edges of a tetrahedron from its first vertex as an orthonormal basis, the longest remainder first, so that needles
-// lose no digits: edge[order[k]] = sum over i <= k of along[k][i] * basis[i].
+// The edges of a tetrahedron from its first vertex as an orthonormal basis, the longest remainder first, so that
+// needles lose no digits: edge[order[k]] = sum over i <= k of along[k][i] * basis[i].
 struct EdgeBasis {
   std::array<glm::dvec4, 3> basis{};
   std::array<std::array<double, 3>, 3> along{};

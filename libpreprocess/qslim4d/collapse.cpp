@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "libpreprocess/qslim4d/inside.h"
+
 namespace tet4d::qslim4d {
 namespace {
 
@@ -61,6 +63,7 @@ bool Collapser::evaluate(std::uint32_t u, std::uint32_t v, Placement& placement)
     q.add(attributes = mesh_->columns.quadric(u, v, mesh_->positions[u], mesh_->positions[v]));
   placement =
       placeVertex(q, mesh_->positions[u], mesh_->positions[v], fixed, rules_.align, rules_.frames, mesh_->space);
+  keepInside(q, mesh_->positions[u], mesh_->positions[v], fixed, mesh_->domain, placement);
   if (mesh_->columns.inMetric()) {
     const double length = mesh_->space.extent(difference(mesh_->positions[v], mesh_->positions[u]));
     limitAttributes(attributes, q.weight, length, difference(placement.at, mesh_->positions[u]), placement);

@@ -81,9 +81,8 @@ void makeUnit(std::span<float> v, std::span<const float> otherwise) {
 
 Quadric Columns::quadric(std::uint32_t u, std::uint32_t v, const Vec4f& at_u, const Vec4f& at_v) const {
   std::array<double, kMostTerms> references{};
-  forEachTerm(list, [&](const SlimColumn& column, unsigned c, std::size_t j) {
-    references[j] = referenceOf(column, u, c);
-  });
+  forEachTerm(list,
+              [&](const SlimColumn& column, unsigned c, std::size_t j) { references[j] = referenceOf(column, u, c); });
   Sums both;
   addSums(*this, u, glm::dvec4(0), references, both);
   addSums(*this, v, difference(at_u, at_v), references, both);
@@ -93,9 +92,8 @@ Quadric Columns::quadric(std::uint32_t u, std::uint32_t v, const Vec4f& at_u, co
 void Columns::merge(std::uint32_t u, std::uint32_t v, const Vec4f& at_u, const Vec4f& at_v, const Vec4f& at,
                     const Space& space) {
   std::array<double, kMostTerms> references{};
-  forEachTerm(list, [&](const SlimColumn& column, unsigned c, std::size_t j) {
-    references[j] = referenceOf(column, u, c);
-  });
+  forEachTerm(list,
+              [&](const SlimColumn& column, unsigned c, std::size_t j) { references[j] = referenceOf(column, u, c); });
   Sums both;
   if (inMetric()) {
     addSums(*this, u, difference(at, at_u), references, both);

@@ -32,10 +32,10 @@ struct SlimColumn {
   std::string name;
   unsigned components = 1;
   ColumnKind kind = ColumnKind::kValue;
-  double weight = 0;             // mean cells that a change by one counts as; 0: not in the metric
-  std::array<float, 4> low{};    // of the finite values, by component
-  std::array<float, 4> high{};   // a value is never taken beyond them
-  std::vector<float> values;     // components of vertex 0, of vertex 1, …
+  double weight = 0;            // mean cells that a change by one counts as; 0: not in the metric
+  std::array<float, 4> low{};   // of the finite values, by component
+  std::array<float, 4> high{};  // a value is never taken beyond them
+  std::vector<float> values;    // components of vertex 0, of vertex 1, …
 };
 
 // Sums over a vertex's tetrahedra for one component in the metric: w g, w d and w. Relative to the vertex's place and
@@ -47,9 +47,9 @@ struct AttributeTerm {
 
 struct Columns {
   std::vector<SlimColumn> list;
-  std::size_t terms = 0;             // components in the metric
-  std::vector<Quadric> squares;      // by vertex: sum of w (g . x + d)^2 over the terms; its weight is not used
-  std::vector<AttributeTerm> sums;   // terms a vertex
+  std::size_t terms = 0;            // components in the metric
+  std::vector<Quadric> squares;     // by vertex: sum of w (g . x + d)^2 over the terms; its weight is not used
+  std::vector<AttributeTerm> sums;  // terms a vertex
 
   bool empty() const { return list.empty(); }
   bool inMetric() const { return terms > 0; }

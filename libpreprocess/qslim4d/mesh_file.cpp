@@ -181,9 +181,8 @@ SlimMesh readMesh(const hypermesh::File& file, const ReadOptions& options, outof
   progress.phase("read", numbers.pages().size());
   Arrays arrays = readPages(file, numbers, options.columns, progress);
   try {
-    SlimMesh mesh =
-        makeSlimMesh(std::move(arrays.positions), std::move(arrays.tets), file.header().domain,
-                     file.header().index_to_world, options.metric, options.keep_non_manifold);
+    SlimMesh mesh = makeSlimMesh(std::move(arrays.positions), std::move(arrays.tets), file.header().domain,
+                                 file.header().index_to_world, options.metric, options.keep_non_manifold);
     if (options.keep_non_manifold) {
       const NonManifold places = lockNonManifold(mesh);
       if (found != nullptr) *found = places;
@@ -204,7 +203,8 @@ SlimMesh readMesh(const hypermesh::File& file, const ReadOptions& options, outof
 std::vector<std::uint64_t> tetsByPart(const hypermesh::File& file) {
   if (file.parts().empty()) return {file.header().tets};
   std::vector<std::uint64_t> tets(file.parts().size());
-  for (std::size_t k = 0; k < file.geometryPages(); ++k) tets[unwrap(file.partOf(k))] += file.geometryEntry(k).counts[2];
+  for (std::size_t k = 0; k < file.geometryPages(); ++k)
+    tets[unwrap(file.partOf(k))] += file.geometryEntry(k).counts[2];
   return tets;
 }
 

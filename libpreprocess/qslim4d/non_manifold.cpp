@@ -30,9 +30,8 @@ class Link {
       for (const auto& [a, b] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}})
         edges_.push_back({triangles_[t][static_cast<std::size_t>(a)], triangles_[t][static_cast<std::size_t>(b)], t});
     }
-    std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) {
-      return std::pair(a.low, a.high) < std::pair(b.low, b.high);
-    });
+    std::sort(edges_.begin(), edges_.end(),
+              [](const Edge& a, const Edge& b) { return std::pair(a.low, a.high) < std::pair(b.low, b.high); });
   }
 
   // A sphere or a disc: every edge in one or two of the triangles, no triangle twice, all joined across edges, and

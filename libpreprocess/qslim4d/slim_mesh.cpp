@@ -144,6 +144,7 @@ SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> 
   mesh.positions = std::move(positions);
   mesh.tets = std::move(tets);
   mesh.space = spaceOf(map);
+  mesh.domain = domain;
   linkStars(mesh);
   mesh.space.speed = speedOf(mesh);
   mesh.quadrics.resize(mesh.positions.size());

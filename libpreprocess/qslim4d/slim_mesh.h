@@ -47,6 +47,7 @@ struct SlimMesh {
   Columns columns;                        // values at the vertices; takes nothing where there are none
   std::uint64_t live_tets = 0, live_vertices = 0;
   Space space;
+  Bounds4f domain;  // no vertex leaves it, index space
 
   bool isLive(std::uint32_t tet) const { return tets[tet][0] != kNone; }
 

@@ -37,9 +37,12 @@ inline std::uint64_t openEdges(const SliceMesh& slice, const Bounds4f& domain) {
     }
   }
   const auto wallsOf = [&](const Vec3f& p) {
-    const std::array<std::pair<float, float>, 6> sides{
-        {{p.x, domain.min.x}, {p.x, domain.max.x}, {p.y, domain.min.y}, {p.y, domain.max.y}, {p.z, domain.min.z},
-         {p.z, domain.max.z}}};
+    const std::array<std::pair<float, float>, 6> sides{{{p.x, domain.min.x},
+                                                        {p.x, domain.max.x},
+                                                        {p.y, domain.min.y},
+                                                        {p.y, domain.max.y},
+                                                        {p.z, domain.min.z},
+                                                        {p.z, domain.max.z}}};
     unsigned walls = 0;
     for (unsigned i = 0; i < 6; ++i) walls |= sides[i].first == sides[i].second ? 1U << i : 0;
     return walls;

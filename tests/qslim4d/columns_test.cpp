@@ -64,8 +64,8 @@ std::vector<float> valuesOf(const std::vector<Vec4f>& vertices, const Field& fie
 }
 
 SlimMesh slimOf(const marching::ExtractedMesh& mesh, std::vector<SlimColumn> columns = {}) {
-  SlimMesh slim = makeSlimMesh(mesh.vertices, mesh.tets, mesh.header.domain, mesh.header.index_to_world,
-                               Metric::kSlice);
+  SlimMesh slim =
+      makeSlimMesh(mesh.vertices, mesh.tets, mesh.header.domain, mesh.header.index_to_world, Metric::kSlice);
   slim.columns.list = std::move(columns);
   addAttributeQuadrics(slim, Metric::kSlice);
   return slim;
@@ -146,9 +146,8 @@ TEST(Columns, ALinearColumnOnAFlatSheetCostsNothingAndStaysExact) {
   const Stats stats = run(slim, mesh.tets.size() / 20);
   EXPECT_LT(slim.live_tets, mesh.tets.size() / 10);
   EXPECT_LT(stats.largest_error, 1e-3);
-  forEachLive(slim, [&](std::uint32_t v) {
-    EXPECT_NEAR(slim.columns.list[0].values[v], field(slim.positions[v]), 2e-3) << v;
-  });
+  forEachLive(
+      slim, [&](std::uint32_t v) { EXPECT_NEAR(slim.columns.list[0].values[v], field(slim.positions[v]), 2e-3) << v; });
 }
 
 // Geometry that says nothing, and a front in the column: in the metric it stays where it is.
@@ -170,8 +169,9 @@ TEST(Columns, InTheMetricKeepsWhatTheGeometryDoesNotSee) {
         value += slim.columns.list[0].values[v] / 4.0;
       }
       const Vec4f& o = slim.positions[tet[0]];
-      const double size = glm::length(cross4(difference(slim.positions[tet[1]], o), difference(slim.positions[tet[2]], o),
-                                             difference(slim.positions[tet[3]], o)));
+      const double size =
+          glm::length(cross4(difference(slim.positions[tet[1]], o), difference(slim.positions[tet[2]], o),
+                             difference(slim.positions[tet[3]], o)));
       sum += size * (value - field(middle)) * (value - field(middle)), volume += size;
     }
     errors[in_metric ? 1 : 0] = std::sqrt(sum / volume);
@@ -200,8 +200,7 @@ TEST(Columns, AnyThreadsGiveTheSameValues) {
 }
 
 class ColumnOrders : public ::testing::TestWithParam<Order> {};
-INSTANTIATE_TEST_SUITE_P(All, ColumnOrders,
-                         ::testing::Values(Order::kPasses, Order::kMultichoice, Order::kHeap));
+INSTANTIATE_TEST_SUITE_P(All, ColumnOrders, ::testing::Values(Order::kPasses, Order::kMultichoice, Order::kHeap));
 
 // White noise of every kind: ranges, labels, normals; in the metric and out of it.
 TEST_P(ColumnOrders, RangesLabelsAndNormalsHoldUnderNoise) {
@@ -218,9 +217,10 @@ TEST_P(ColumnOrders, RangesLabelsAndNormalsHoldUnderNoise) {
     const float length = std::hypot(v[0], v[1], v[2]);
     for (const float x : v) normals.push_back(x / length);
   }
-  SlimMesh slim = slimOf(mesh, {columnOf("noise", 1, noise), columnOf("more", 1, more, 1e-6),
-                                columnOf("labels", 1, labels, 0, ColumnKind::kLabel),
-                                columnOf("normal", 3, normals, 0, ColumnKind::kNormal), columnOf("holes", 1, holes, 0.5)});
+  SlimMesh slim =
+      slimOf(mesh, {columnOf("noise", 1, noise), columnOf("more", 1, more, 1e-6),
+                    columnOf("labels", 1, labels, 0, ColumnKind::kLabel),
+                    columnOf("normal", 3, normals, 0, ColumnKind::kNormal), columnOf("holes", 1, holes, 0.5)});
   run(slim, mesh.tets.size() / 6, GetParam());
   const auto& list = slim.columns.list;
   std::uint64_t live = 0, unknown = 0;

@@ -95,8 +95,7 @@ TEST(NonManifold, AManifoldHasNoneWhateverItsBoundary) {
 }
 
 class NonManifoldOrders : public ::testing::TestWithParam<Order> {};
-INSTANTIATE_TEST_SUITE_P(All, NonManifoldOrders,
-                         ::testing::Values(Order::kPasses, Order::kMultichoice, Order::kHeap));
+INSTANTIATE_TEST_SUITE_P(All, NonManifoldOrders, ::testing::Values(Order::kPasses, Order::kMultichoice, Order::kHeap));
 
 TEST_P(NonManifoldOrders, PlacesStayAsTheyAreAndTheRestIsSimplified) {
   const marching::ExtractedMesh mesh = joined();

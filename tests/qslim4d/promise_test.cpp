@@ -58,13 +58,15 @@ TEST(Promise, IsConfirmedWhateverTheMeasureDoes) {
 }
 
 TEST(PromiseStiff, WhatCannotBeKeptEndsAndSaysHowFarItCame) {
-  const PromiseOutcome outcome =
-      keepPromise(1e-12, 5, [](double estimate) { return Attempt{0.1 + estimate, false, false}; });
+  const PromiseOutcome outcome = keepPromise(1e-12, 5, [](double estimate) {
+    return Attempt{0.1 + estimate, false, false};
+  });
   EXPECT_FALSE(outcome.kept);
   EXPECT_EQ(outcome.tries, 5u);
   EXPECT_NEAR(outcome.measured, 0.1, 1e-9);
-  const PromiseOutcome infinite = keepPromise(
-      1, 3, [](double) { return Attempt{std::numeric_limits<double>::infinity(), false, false}; });
+  const PromiseOutcome infinite = keepPromise(1, 3, [](double) {
+    return Attempt{std::numeric_limits<double>::infinity(), false, false};
+  });
   EXPECT_FALSE(infinite.kept);
   EXPECT_EQ(infinite.tries, 3u);
 }
@@ -132,9 +134,9 @@ TEST(SliceBound, AComponentThatIsMissingIsFarOrInfinitelyFar) {
       sliceTets(tets, mesh.vertices, {}, static_cast<float>(frame), 5, slice);
       return slice;
     };
-    const measure::SliceBound bound =
-        measure::boundSlices(part, [&](double frame) { return exchange::sliceHypermesh(file, frame); }, {},
-                             mesh.header.domain, frames, 1, executor, progress);
+    const measure::SliceBound bound = measure::boundSlices(
+        part, [&](double frame) { return exchange::sliceHypermesh(file, frame); }, {}, mesh.header.domain, frames, 1,
+        executor, progress);
     EXPECT_FALSE(bound.within);
     EXPECT_GT(bound.bound, 5);
     EXPECT_EQ(std::isinf(bound.bound), !any);
@@ -174,8 +176,8 @@ TEST(Promise, OnAMeshIsKeptAtEveryTimeMeasuredAndBirthsAreKept) {
     writeMeshes({&best, 1}, writer.value(), progress);
     ASSERT_TRUE(writer.value().close("{}").ok());
     const hypermesh::File result = std::move(hypermesh::File::open(out)).value();
-    const measure::SliceDistance distance =
-        measure::compareSlices(result, file, measure::framesAndBetween(file), {1e-3, 20'000, 400'000}, executor, progress);
+    const measure::SliceDistance distance = measure::compareSlices(result, file, measure::framesAndBetween(file),
+                                                                   {1e-3, 20'000, 400'000}, executor, progress);
     EXPECT_LE(distance.max, outcome.measured * (1 + 1e-9)) << promised;
     for (int k = 0; k < 6; ++k) {
       EXPECT_EQ(testing::componentsOf(exchange::sliceHypermesh(result, k)),

@@ -84,9 +84,10 @@ qslim4d::Options slimOptions(const Options& options, std::uint64_t seed, std::ui
                                                 : qslim4d::Order::kPasses;
   const auto part = static_cast<double>(part_tets);
   if (options.tets && all_tets > 0) {
-    slim.target_tets = part_tets == all_tets ? *options.tets
-                                             : static_cast<std::uint64_t>(std::floor(static_cast<double>(*options.tets) *
-                                                                                     (part / static_cast<double>(all_tets))));
+    slim.target_tets = part_tets == all_tets
+                           ? *options.tets
+                           : static_cast<std::uint64_t>(std::floor(static_cast<double>(*options.tets) *
+                                                                   (part / static_cast<double>(all_tets))));
   }
   if (options.ratio) slim.target_tets = static_cast<std::uint64_t>(std::floor(*options.ratio * part));
   if (options.error) slim.most_error = *options.error;
