@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "libpreprocess/qslim4d/inside.h"
@@ -58,15 +59,15 @@ bool Collapser::evaluate(std::uint32_t u, std::uint32_t v, Placement& placement)
     if ((both >> (2 * c) & 3u) != 0) fixed.mask |= 1u << c;
   Quadric q = mesh_->quadrics[v].about(difference(mesh_->positions[u], mesh_->positions[v]));
   q.add(mesh_->quadrics[u]);
-  Quadric attributes;
+  std::optional<Quadric> attributes;
   if (mesh_->columns.inMetric())
-    q.add(attributes = mesh_->columns.quadric(u, v, mesh_->positions[u], mesh_->positions[v]));
+    q.add(attributes.emplace(mesh_->columns.quadric(u, v, mesh_->positions[u], mesh_->positions[v])));
   placement =
       placeVertex(q, mesh_->positions[u], mesh_->positions[v], fixed, rules_.align, rules_.frames, mesh_->space);
   keepInside(q, mesh_->positions[u], mesh_->positions[v], fixed, mesh_->domain, placement);
-  if (mesh_->columns.inMetric()) {
+  if (attributes) {
     const double length = mesh_->space.extent(difference(mesh_->positions[v], mesh_->positions[u]));
-    limitAttributes(attributes, q.weight, length, difference(placement.at, mesh_->positions[u]), placement);
+    limitAttributes(*attributes, q.weight, length, difference(placement.at, mesh_->positions[u]), placement);
   }
   return true;
 }
