@@ -73,7 +73,7 @@ def cost(name, tets, *options):
     return phase["seconds_cpu"] / removed
 
 
-side, frames = (28, 8) if SMALL else (96, 20)
+side, frames = (28, 8) if SMALL else (72, 20)
 tilted = lambda x, y, z, t: 0.3 * side + 0.25 * x - 0.125 * y + 0.5 * t - z  # exact in binary: flat to the last bit
 flat_tets = extract("flat", side, frames, tilted)
 curved_tets = extract("curved", side, frames, lambda x, y, z, t: 0.41 * side + 0.02 * t - np.sqrt(
