@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace tet4d::measure {
 namespace {
@@ -67,6 +68,7 @@ TriangleTree::TriangleTree(const SurfaceView& mesh) {
   build(0, 0, count, order, all);
   triangles_.reserve(count);
   for (const std::uint32_t i : order) triangles_.push_back(all[i]);
+  ranks_ = std::move(order);
 }
 
 void TriangleTree::build(std::uint32_t node, std::uint32_t first, std::uint32_t count, std::span<std::uint32_t> order,

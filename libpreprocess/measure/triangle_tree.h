@@ -26,7 +26,7 @@ double squaredDistance(const Point3& p, const Point3& a, const Point3& b, const 
 
 class TriangleTree {
  public:
-  // Copies the triangles' corners: 72 bytes a triangle, and up to 64 for its part of the tree. O(n log n). The mesh has
+  // Copies the triangles' corners: 76 bytes a triangle, and up to 64 for its part of the tree. O(n log n). The mesh has
   // at least one triangle and at most 2^31.
   explicit TriangleTree(const SurfaceView& mesh);
 
@@ -36,6 +36,8 @@ class TriangleTree {
   };
   // O(log n) where the mesh is near, O(n) at worst. hint: a triangle that is likely near.
   Nearest nearest(const Point3& p, std::uint32_t hint = 0) const;
+  // Where a triangle of the tree's order stands in the mesh.
+  std::uint32_t original(std::uint32_t triangle) const { return ranks_[triangle]; }
   // The least over triangles t of the largest distance, squared, of `corners` to t. As distance to t is convex, no
   // point of the corners' hull is farther from the mesh. Searched below `limit`; more than `limit` means it found none.
   double covering(std::span<const Point3, 3> corners, double limit) const;
@@ -52,6 +54,7 @@ class TriangleTree {
              std::span<const Corners> all);
 
   std::vector<Corners> triangles_;
+  std::vector<std::uint32_t> ranks_;  // in the mesh, of each of them
   std::vector<Node> nodes_;
 };
 

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <optional>
 #include <utility>
+
+#include "libpreprocess/qslim4d/inside.h"
 
 namespace tet4d::qslim4d {
 namespace {
@@ -66,6 +69,7 @@ void keepSingles(std::vector<std::uint64_t>& items) {
 }  // namespace
 
 bool Collapser::evaluate(std::uint32_t u, std::uint32_t v, Placement& placement) const {
+  if (((mesh_->is_boundary[u] | mesh_->is_boundary[v]) & kLocked) != 0) return false;
   const Walls wu = mesh_->walls[u], wv = mesh_->walls[v], both = wu | wv;
   if (both != wu && both != wv) return false;
   const Vec4f& held = mesh_->positions[both == wu ? u : v];
@@ -74,8 +78,16 @@ bool Collapser::evaluate(std::uint32_t u, std::uint32_t v, Placement& placement)
     if ((both >> (2 * c) & 3u) != 0) fixed.mask |= 1u << c;
   Quadric q = mesh_->quadrics[v].about(difference(mesh_->positions[u], mesh_->positions[v]));
   q.add(mesh_->quadrics[u]);
+  std::optional<Quadric> attributes;
+  if (mesh_->columns.inMetric())
+    q.add(attributes.emplace(mesh_->columns.quadric(u, v, mesh_->positions[u], mesh_->positions[v])));
   placement =
       placeVertex(q, mesh_->positions[u], mesh_->positions[v], fixed, rules_.align, rules_.frames, mesh_->space);
+  keepInside(q, mesh_->positions[u], mesh_->positions[v], fixed, mesh_->domain, placement);
+  if (attributes) {
+    const double length = mesh_->space.extent(difference(mesh_->positions[v], mesh_->positions[u]));
+    limitAttributes(*attributes, q.weight, length, difference(placement.at, mesh_->positions[u]), placement);
+  }
   return true;
 }
 
@@ -166,7 +178,7 @@ void Collapser::readBorder(const std::vector<Corner>& apart, std::uint32_t other
 
 // The same with the boundary coned to one more vertex: its cone over a face of the boundary is a tetrahedron.
 bool Collapser::bordersAllow(std::uint32_t u, std::uint32_t v) {
-  if (mesh_->is_boundary[u] == 0 || mesh_->is_boundary[v] == 0) return true;
+  if ((mesh_->is_boundary[u] & mesh_->is_boundary[v] & kOnBoundary) == 0) return true;
   readBorder(apart_u_, v, border_u_);
   readBorder(apart_v_, u, border_v_);
   const auto touches = [](const std::vector<Edge>& border, std::uint32_t w) {
@@ -264,6 +276,7 @@ std::uint32_t Collapser::merge(std::uint32_t u, std::uint32_t v, const Vec4f& at
     for (const Corner& corner : *apart) *to++ = corner.number;
   mesh.stars[u] = star;
   mesh.stars[v] = {};
+  if (!mesh.columns.empty()) mesh.columns.merge(u, v, mesh.positions[u], mesh.positions[v], at, mesh.space);
   mesh.quadrics[u] = mesh.quadrics[u].about(difference(at, mesh.positions[u]));
   mesh.quadrics[u].add(mesh.quadrics[v].about(difference(at, mesh.positions[v])));
   mesh.positions[u] = at;

@@ -2,149 +2,212 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <utility>
 
+#include "libpreprocess/column_list.h"
 #include "libpreprocess/error.h"
-#include "libpreprocess/exchange/foreign_runs.h"
 #include "libpreprocess/exchange/mesh_pages.h"
+#include "libpreprocess/exchange/slice_columns.h"
 #include "libpreprocess/outofcore/huge_pages.h"
+#include "libpreprocess/qslim4d/attributes.h"
 
 namespace tet4d::qslim4d {
 namespace {
 
 constexpr std::uint64_t kMostTets = std::uint64_t{1} << 30;  // corners have u32 numbers
-constexpr std::size_t kLeastPageTets = 16384;                // frames are joined until a page has so many
+constexpr double kRangeInCells = 10;                         // of a column in the metric without a weight
 
 void checkSize(const hypermesh::File& file) {
   const hypermesh::MeshHeader& header = file.header();
-  const auto refuse = [&](const std::string& what, const std::string& remedy) {
-    throw Error(FaultCode::kBadInput, file.reader().path(), "", what, remedy);
-  };
-  if (header.parts > 1)
-    refuse("has " + std::to_string(header.parts) + " parts, but one part is simplified at a time",
-           "extract one isovalue a file");
-  if (header.vertices >= kNone || header.tets >= kMostTets)
-    refuse("has " + std::to_string(header.vertices) + " vertices and " + std::to_string(header.tets) +
-               " tetrahedra, too many to simplify in core (2^32 - 2 and 2^30 - 1)",
-           "crop it, or extract it with a stride");
+  if (header.vertices < kNone && header.tets < kMostTets) return;
+  throw Error(FaultCode::kBadInput, file.reader().path(), "",
+              "has " + std::to_string(header.vertices) + " vertices and " + std::to_string(header.tets) +
+                  " tetrahedra, too many to simplify in core (2^32 - 2 and 2^30 - 1)",
+              "crop it, or extract it with a stride");
 }
 
-// The mesh without what is dead: vertices by time, tetrahedra by their first vertex.
-struct Packed {
-  std::vector<Vec4f> vertices;
-  std::vector<hypermesh::Tet> tets;
-  std::vector<std::uint64_t> first_tet;  // by vertex: the first tetrahedron whose smallest vertex is it or a later one
+// The numbers a part's vertices get: those of its pages in a row.
+class PartNumbers {
+ public:
+  PartNumbers(const hypermesh::File& file, std::uint64_t part) {
+    std::uint64_t first = 0, tets = 0;
+    const auto fail = [&](std::size_t page, const std::string& what) {
+      throw Error(FaultCode::kBadInput, file.reader().path(), "page " + std::to_string(page), what,
+                  "make the file again");
+    };
+    for (std::size_t k = 0; k < file.geometryPages(); ++k) {
+      const auto& counts = file.geometryEntry(k).counts;
+      if (counts[0] != first)
+        fail(k, "its first vertex is " + std::to_string(counts[0]) + ", expected " + std::to_string(first));
+      first += counts[1], tets += counts[2];
+      if (!file.parts().empty() && unwrap(file.partOf(k)) != part) continue;
+      pages_.push_back(k);
+      ranges_.push_back({counts[0], counts[1], vertices_});
+      vertices_ += counts[1], tets_ += counts[2];
+    }
+    // Before anything is reserved by these numbers.
+    if (first != file.header().vertices || tets != file.header().tets) {
+      fail(file.geometryPages(), "the pages hold " + std::to_string(first) + " vertices and " + std::to_string(tets) +
+                                     " tetrahedra, the header tells of " + std::to_string(file.header().vertices) +
+                                     " and " + std::to_string(file.header().tets));
+    }
+  }
+  const std::vector<std::size_t>& pages() const { return pages_; }
+  std::uint64_t vertices() const { return vertices_; }
+  std::uint64_t tets() const { return tets_; }
+  // kNone for a vertex of another part.
+  std::uint32_t of(std::uint64_t global) const {
+    const auto after = std::upper_bound(ranges_.begin(), ranges_.end(), global,
+                                        [](std::uint64_t n, const Range& range) { return n < range.first; });
+    if (after == ranges_.begin() || global - std::prev(after)->first >= std::prev(after)->count) return kNone;
+    return static_cast<std::uint32_t>(std::prev(after)->local + global - std::prev(after)->first);
+  }
+
+ private:
+  struct Range {
+    std::uint64_t first, count, local;
+  };
+  std::vector<std::size_t> pages_;
+  std::vector<Range> ranges_;
+  std::uint64_t vertices_ = 0, tets_ = 0;
 };
 
-Packed pack(const SlimMesh& mesh) {
-  std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
-    if (!mesh.isLive(t)) continue;
-    for (const std::uint32_t v : mesh.tets[t]) number[v] = 0;
-  }
-  std::vector<std::uint32_t> order;
-  for (std::uint32_t v = 0; v < number.size(); ++v)
-    if (number[v] != kNone) order.push_back(v);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return mesh.positions[a].t < mesh.positions[b].t; });
-  Packed packed;
-  for (const std::uint32_t v : order) {
-    number[v] = static_cast<std::uint32_t>(packed.vertices.size());
-    packed.vertices.push_back(mesh.positions[v]);
-  }
-  packed.tets.reserve(mesh.live_tets);
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
-    if (!mesh.isLive(t)) continue;
-    hypermesh::Tet tet = mesh.tets[t];
-    for (std::uint32_t& v : tet) v = number[v];
-    packed.tets.push_back(tet);
-  }
-  const auto first = [](const hypermesh::Tet& tet) { return std::min({tet[0], tet[1], tet[2], tet[3]}); };
-  std::stable_sort(packed.tets.begin(), packed.tets.end(),
-                   [&](const hypermesh::Tet& a, const hypermesh::Tet& b) { return first(a) < first(b); });
-  packed.first_tet.assign(packed.vertices.size() + 1, packed.tets.size());
-  for (std::size_t t = packed.tets.size(); t-- > 0;) packed.first_tet[first(packed.tets[t])] = t;
-  for (std::size_t v = packed.vertices.size(); v-- > 0;)
-    packed.first_tet[v] = std::min(packed.first_tet[v], packed.first_tet[v + 1]);
-  return packed;
+struct Arrays {
+  std::vector<Vec4f> positions;
+  std::vector<hypermesh::Tet> tets;
+  std::vector<std::vector<float>> columns;
+};
+
+std::span<const float> floatsOf(const paged::PageBytes& bytes, std::size_t count) {
+  return {reinterpret_cast<const float*>(bytes.bytes().data()), count};
 }
 
-// The end of the page that begins with vertex `begin`: whole frames, enough of them.
-std::size_t pageEnd(const Packed& packed, std::size_t begin) {
-  std::size_t end = begin;
-  while (end < packed.vertices.size()) {
-    const float frame = std::floor(packed.vertices[end].t);
-    while (end < packed.vertices.size() && std::floor(packed.vertices[end].t) == frame) ++end;
-    if (packed.first_tet[end] - packed.first_tet[begin] >= kLeastPageTets) break;
+Arrays readPages(const hypermesh::File& file, const PartNumbers& numbers, const std::vector<PlannedColumn>& columns,
+                 outofcore::Progress& progress) {
+  Arrays arrays;
+  outofcore::reserveHuge(arrays.positions, numbers.vertices());
+  outofcore::reserveHuge(arrays.tets, numbers.tets());
+  for (const PlannedColumn& column : columns)
+    arrays.columns.emplace_back().reserve(numbers.vertices() * column.as.components);
+  std::vector<std::uint32_t> locals;
+  std::size_t done = 0;
+  for (const std::size_t k : numbers.pages()) {
+    const hypermesh::GatheredPage page = unwrap(file.gather(k));
+    arrays.positions.insert(arrays.positions.end(), page.view.vertices.begin(), page.view.vertices.end());
+    locals.clear();
+    for (const std::uint64_t global : exchange::globalNumbers(page.view)) locals.push_back(numbers.of(global));
+    for (const hypermesh::Tet& tet : page.view.tets) {
+      hypermesh::Tet& named = arrays.tets.emplace_back();
+      for (std::size_t i = 0; i < 4; ++i) named[i] = locals[tet[i]];
+      if (std::find(named.begin(), named.end(), kNone) == named.end()) continue;
+      throw Error(FaultCode::kBadInput, file.reader().path(), "page " + std::to_string(k),
+                  "a tetrahedron has a vertex of another part", "make the file again");
+    }
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      const paged::PageBytes bytes = unwrap(file.loadColumn(columns[c].column, k));
+      const auto values = floatsOf(bytes, page.view.vertices.size() * columns[c].as.components);
+      arrays.columns[c].insert(arrays.columns[c].end(), values.begin(), values.end());
+    }
+    file.reader().dropResident();
+    progress.step(++done);
   }
-  // What follows without a tetrahedron of its own belongs here too.
-  return packed.first_tet[end] == packed.tets.size() ? packed.vertices.size() : end;
+  return arrays;
 }
 
 }  // namespace
 
-std::uint64_t boundMemory(const hypermesh::File& file) {
+std::uint64_t boundMemory(const hypermesh::File& file, std::span<const ColumnWish> columns) {
   const hypermesh::MeshHeader& header = file.header();
   // The list: 2.5 edges a vertex and 12 bytes each; what a round holds beside it.
   constexpr std::uint64_t kEdgeBytes = 40, kRoundBytes = 32;
-  std::uint64_t page = 0;
+  std::uint64_t page = 0, column_bytes = 0, terms = 0;
   for (std::size_t k = 0; k < file.geometryPages(); ++k) page = std::max(page, file.gatherBytes(k));
-  return slimMeshBytes(header.vertices, header.tets) + header.vertices * (kEdgeBytes + kRoundBytes) + page;
+  for (const ColumnWish& wish : columns) {
+    const std::uint64_t components = file.columns()[wish.column].components;
+    column_bytes += 2 * sizeof(float) * components;  // as they are, and packed
+    terms += wish.in_metric ? components : 0;
+  }
+  if (terms > 0) column_bytes += sizeof(Quadric) + terms * sizeof(AttributeTerm);
+  return slimMeshBytes(header.vertices, header.tets) + header.vertices * (kEdgeBytes + kRoundBytes + column_bytes) +
+         page;
 }
 
-SlimMesh readMesh(const hypermesh::File& file, Metric metric, outofcore::Progress& progress) {
-  checkSize(file);
-  progress.phase("read", file.geometryPages());
-  std::vector<Vec4f> positions;
-  std::vector<hypermesh::Tet> tets;
-  outofcore::reserveHuge(positions, file.header().vertices);
-  outofcore::reserveHuge(tets, file.header().tets);
-  std::size_t pages = 0;
-  exchange::forEachPage(file, [&](const hypermesh::GatheredPage& page) {
-    positions.insert(positions.end(), page.view.vertices.begin(), page.view.vertices.end());
-    const std::vector<std::uint64_t> numbers = exchange::globalNumbers(page.view);
-    for (const hypermesh::Tet& tet : page.view.tets) {
-      tets.push_back({static_cast<std::uint32_t>(numbers[tet[0]]), static_cast<std::uint32_t>(numbers[tet[1]]),
-                      static_cast<std::uint32_t>(numbers[tet[2]]), static_cast<std::uint32_t>(numbers[tet[3]])});
+std::vector<PlannedColumn> planColumns(const hypermesh::File& file, std::span<const ColumnWish> wishes,
+                                       outofcore::Progress& progress) {
+  std::vector<PlannedColumn> planned;
+  if (wishes.empty()) return planned;
+  progress.phase("columns", wishes.size());
+  const double cell = spaceOf(file.header().index_to_world).cell;
+  for (const ColumnWish& wish : wishes) {
+    const ColumnEntry& entry = file.columns()[wish.column];
+    SlimColumn column;
+    column.name = columnName(entry);
+    column.components = entry.components;
+    bool is_whole = true, is_empty = true;
+    column.low.fill(std::numeric_limits<float>::max());
+    column.high.fill(std::numeric_limits<float>::lowest());
+    for (std::size_t k = 0; k < file.geometryPages(); ++k) {
+      const std::size_t n = column.components, vertices = file.geometryEntry(k).counts[1];
+      if (vertices == 0) continue;
+      const paged::PageBytes bytes = unwrap(file.loadColumn(wish.column, k));
+      const auto values = floatsOf(bytes, vertices * n);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (!std::isfinite(values[i])) continue;
+        is_empty = false;
+        is_whole = is_whole && values[i] == std::nearbyint(values[i]);
+        column.low[i % n] = std::min(column.low[i % n], values[i]);
+        column.high[i % n] = std::max(column.high[i % n], values[i]);
+      }
     }
-    file.reader().dropResident();
-    progress.step(++pages);
-  });
+    double range = 0;
+    for (std::size_t c = 0; c < column.components && !is_empty; ++c)
+      range = std::max(range, double{column.high[c]} - column.low[c]);
+    if (column.name == exchange::kNormal && column.components == 3) {
+      column.kind = ColumnKind::kNormal;
+    } else if (is_whole && !wish.in_metric) {
+      column.kind = ColumnKind::kLabel;
+    }
+    // A constant says nothing, and would take memory to say it.
+    if (wish.in_metric && range > 0) column.weight = wish.weight ? *wish.weight / cell : kRangeInCells / range;
+    planned.push_back({wish.column, std::move(column)});
+    progress.step(planned.size());
+  }
+  return planned;
+}
+
+SlimMesh readMesh(const hypermesh::File& file, const ReadOptions& options, outofcore::Progress& progress,
+                  NonManifold* found) {
+  checkSize(file);
+  const PartNumbers numbers(file, options.part);
+  progress.phase("read", numbers.pages().size());
+  Arrays arrays = readPages(file, numbers, options.columns, progress);
   try {
-    return makeSlimMesh(std::move(positions), std::move(tets), file.header().domain, file.header().index_to_world,
-                        metric);
+    SlimMesh mesh = makeSlimMesh(std::move(arrays.positions), std::move(arrays.tets), file.header().domain,
+                                 file.header().index_to_world, options.metric, options.keep_non_manifold);
+    if (options.keep_non_manifold) {
+      const NonManifold places = lockNonManifold(mesh);
+      if (found != nullptr) *found = places;
+    }
+    for (std::size_t c = 0; c < options.columns.size(); ++c) {
+      mesh.columns.list.push_back(options.columns[c].as);
+      mesh.columns.list.back().values = std::move(arrays.columns[c]);
+    }
+    addAttributeQuadrics(mesh, options.metric);
+    return mesh;
   } catch (const Error& error) {
     Fault fault = error.fault();
-    if (fault.file.empty()) fault.file = file.reader().path();
+    if (fault.file.empty() && fault.code == FaultCode::kBadInput) fault.file = file.reader().path();
     throw Error(fault);
   }
 }
 
-void writeMesh(const SlimMesh& mesh, double error_world, hypermesh::Writer& writer, outofcore::Progress& progress) {
-  Packed packed = pack(mesh);
-  progress.phase("write", packed.vertices.size());
-  for (std::size_t begin = 0, end = 0; begin < packed.vertices.size(); begin = end) {
-    end = pageEnd(packed, begin);
-    const auto first = packed.tets.begin() + static_cast<std::ptrdiff_t>(packed.first_tet[begin]);
-    std::vector<hypermesh::Tet> tets(first, packed.tets.begin() + static_cast<std::ptrdiff_t>(packed.first_tet[end]));
-    Bounds4f bounds;
-    std::uint64_t last = end;
-    for (hypermesh::Tet& tet : tets) {
-      for (std::uint32_t& v : tet) {
-        bounds.add(packed.vertices[v]);
-        last = std::max<std::uint64_t>(last, std::uint64_t{v} + 1);
-        v -= static_cast<std::uint32_t>(begin);
-      }
-    }
-    const std::vector<hypermesh::Run> runs =
-        exchange::nameForeign(tets, end - begin, last - begin, writer.nextVertex());
-    writer.setPageErrors(static_cast<float>(error_world), -1);
-    const std::span<const Vec4f> vertices(packed.vertices.data() + begin, end - begin);
-    unwrap(writer.addPage(vertices, runs, tets, bounds));
-    progress.step(end);
-  }
+std::vector<std::uint64_t> tetsByPart(const hypermesh::File& file) {
+  if (file.parts().empty()) return {file.header().tets};
+  std::vector<std::uint64_t> tets(file.parts().size());
+  for (std::size_t k = 0; k < file.geometryPages(); ++k)
+    tets[unwrap(file.partOf(k))] += file.geometryEntry(k).counts[2];
+  return tets;
 }
 
 }  // namespace tet4d::qslim4d

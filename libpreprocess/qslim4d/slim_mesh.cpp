@@ -15,9 +15,6 @@
 namespace tet4d::qslim4d {
 namespace {
 
-// Where the spatial part of a tetrahedron's normal is below this share of its temporal part, the surface stands almost
-// parallel to the present (births, jumps): a fixed-time distance has no meaning there, and its weight is bounded.
-constexpr double kLeastSlope = 0.05;
 // Of a constraint that holds a free boundary in place.
 constexpr double kBoundaryWeight = 10;
 
@@ -90,7 +87,7 @@ void addBoundaryQuadric(SlimMesh& mesh, const Face& face, std::uint32_t apex, Me
   throw Error(FaultCode::kBadInput, "",
               "triangle " + std::to_string(face[0]) + " " + std::to_string(face[1]) + " " + std::to_string(face[2]),
               "lies in more than two tetrahedra: the mesh is no manifold there",
-              "see tet4d-info --validate for all such places, and mend the mesh");
+              "see tet4d-info --validate for all such places, and mend the mesh, or give --non-manifold keep");
 }
 
 constexpr std::uint32_t kChunk = 4096;  // vertices a task
@@ -130,20 +127,20 @@ void facesFrom(const SlimMesh& mesh, std::uint32_t v, std::vector<SeenFace>& see
 }
 
 // The faces of one tetrahedron, in order of vertices.
-std::vector<SeenFace> boundaryFaces(const SlimMesh& mesh, outofcore::Executor* executor) {
+std::vector<SeenFace> boundaryFaces(const SlimMesh& mesh, const MeshContext& context) {
   struct Found {
     std::vector<SeenFace> faces;
     std::optional<Face> refused;
   };
   std::vector<Found> found((mesh.positions.size() + kChunk - 1) / kChunk);
-  inChunks(executor, mesh.positions.size(), [&](std::size_t chunk) {
+  inChunks(context.executor, mesh.positions.size(), [&](std::size_t chunk) {
     std::vector<SeenFace> seen;
     const std::size_t end = std::min(mesh.positions.size(), (chunk + 1) * kChunk);
     for (std::size_t v = chunk * kChunk; v < end; ++v) {
       facesFrom(mesh, static_cast<std::uint32_t>(v), seen);
       for (std::size_t i = 0, next = 0; i < seen.size(); i = next) {
         while (next < seen.size() && seen[next].face == seen[i].face) ++next;
-        if (next - i > 2 && !found[chunk].refused) found[chunk].refused = seen[i].face;
+        if (next - i > 2 && !context.keep_non_manifold && !found[chunk].refused) found[chunk].refused = seen[i].face;
         if (next - i == 1) found[chunk].faces.push_back(seen[i]);
       }
     }
@@ -157,9 +154,9 @@ std::vector<SeenFace> boundaryFaces(const SlimMesh& mesh, outofcore::Executor* e
 }
 
 // Marks boundary vertices, and holds what of the boundary is on no wall.
-void findBoundary(SlimMesh& mesh, Metric metric, outofcore::Executor* executor) {
-  for (const auto& [face, apex] : boundaryFaces(mesh, executor)) {
-    for (const std::uint32_t w : face) mesh.is_boundary[w] = 1;
+void findBoundary(SlimMesh& mesh, Metric metric, const MeshContext& context) {
+  for (const auto& [face, apex] : boundaryFaces(mesh, context)) {
+    for (const std::uint32_t w : face) mesh.is_boundary[w] |= kOnBoundary;
     if ((mesh.walls[face[0]] & mesh.walls[face[1]] & mesh.walls[face[2]]) == 0)
       addBoundaryQuadric(mesh, face, apex, metric);
   }
@@ -168,11 +165,12 @@ void findBoundary(SlimMesh& mesh, Metric metric, outofcore::Executor* executor) 
 }  // namespace
 
 SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> tets, const Bounds4f& domain,
-                      const AffineMap& map, Metric metric, outofcore::Executor* executor) {
+                      const AffineMap& map, Metric metric, const MeshContext& context) {
   SlimMesh mesh;
   mesh.positions = std::move(positions);
   mesh.tets = std::move(tets);
   mesh.space = spaceOf(map);
+  mesh.domain = domain;
   const std::size_t corners = 4 * mesh.tets.size();
   outofcore::reserveHuge(mesh.corners, corners + corners / kRoomShare);
   mesh.corners.resize(corners + corners / kRoomShare);
@@ -186,7 +184,7 @@ SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> 
   mesh.walls.reserve(mesh.positions.size());
   for (const Vec4f& v : mesh.positions) mesh.walls.push_back(wallsOf(v, domain));
   for (const hypermesh::Tet& tet : mesh.tets) addTetQuadric(mesh, tet, metric);
-  findBoundary(mesh, metric, executor);
+  findBoundary(mesh, metric, context);
   return mesh;
 }
 

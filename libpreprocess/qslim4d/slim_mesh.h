@@ -12,6 +12,7 @@
 
 #include "formats/hypermesh.h"
 #include "libpreprocess/outofcore/executor.h"
+#include "libpreprocess/qslim4d/columns.h"
 #include "libpreprocess/qslim4d/quadric.h"
 #include "libpreprocess/qslim4d/space.h"
 
@@ -19,8 +20,16 @@ namespace tet4d::qslim4d {
 
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
+// Where the spatial part of a tetrahedron's normal is below this share of its temporal part, the surface stands almost
+// parallel to the present (births, jumps): a fixed-time distance has no meaning there, and its weight is bounded.
+inline constexpr double kLeastSlope = 0.05;
+
 // Walls of the domain a vertex stands on: bit 2c for the low side of coordinate c (x y z t), 2c + 1 for the high one.
 using Walls = std::uint8_t;
+
+// Flags of a vertex.
+inline constexpr std::uint8_t kOnBoundary = 1;  // it lies in a triangle of one tetrahedron
+inline constexpr std::uint8_t kLocked = 2;      // it keeps its place, and no edge at it is collapsed
 
 enum class Metric {
   kSlice,  // squared spatial distance at fixed time, weighted by swept area
@@ -41,9 +50,11 @@ struct SlimMesh {
   std::vector<Star> stars;             // by vertex
   std::vector<Quadric> quadrics;       // by vertex, about the vertex
   std::vector<Walls> walls;
-  std::vector<std::uint8_t> is_boundary;  // the vertex lies in a triangle of one tetrahedron
+  std::vector<std::uint8_t> is_boundary;  // by vertex: flags, kOnBoundary and kLocked
+  Columns columns;                        // values at the vertices; takes nothing where there are none
   std::uint64_t live_tets = 0, live_vertices = 0;
   Space space;
+  Bounds4f domain;  // no vertex leaves it, index space
 
   bool isLive(std::uint32_t tet) const { return tets[tet][0] != kNone; }
   // A vertex whose last tetrahedron died with others' edges still counts as used until the stars are laid out again.
@@ -68,11 +79,17 @@ struct SlimMesh {
   }
 };
 
+// What a mesh is made with beside its arrays.
+struct MeshContext {
+  bool keep_non_manifold = false;           // a triangle of more than two tetrahedra is no refusal
+  outofcore::Executor* executor = nullptr;  // who looks for the boundary; without one, the caller
+};
+
 // The mesh of these vertices and tetrahedra with stars, walls of `domain`, boundary and quadrics. Throws
 // Error{kBadInput} that names the triangle if one lies in more than two tetrahedra (the link condition has no meaning
-// there). O(tets log star).
+// there), unless keep_non_manifold: lockNonManifold() must follow. O(tets log star).
 SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> tets, const Bounds4f& domain,
-                      const AffineMap& map, Metric metric, outofcore::Executor* executor = nullptr);
+                      const AffineMap& map, Metric metric, const MeshContext& context = {});
 
 // Drops dead tetrahedra, which gives those that are left new numbers, and lays all stars out again, in order of
 // vertices and tetrahedra. O(tets).

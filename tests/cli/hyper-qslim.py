@@ -1,6 +1,38 @@
 """Cases of hyper-qslim, between the frames and what is played."""
 
+import json
+
 DAM = "frames=\"$(ls {data}/dambreak/alpha_00{08,09,10,11}.nrrd)\"; tet4d-mc $frames --iso 0.5 -q -o dam.t4h; "
+
+COLUMNS = "tet4d-mc {data}/dambreak/alpha_00{08,09,10}.nrrd --iso 0.5 --stride 2 --normals gradient --velocity -q -o dam.t4h; "
+
+
+def stats(result, name):
+    return json.loads((result.directory / name).read_text())
+
+
+# A promise, judged by slices as every program makes them and by the distance of surfaces.
+def check_promise(result):
+    record = stats(result, "s.json")
+    error, counts = record["error"], record["counts"]
+    assert 0 < error["confirmed_bound_world"] <= error["promised_world"] == 0.02, error
+    assert 1 <= counts["tries"] <= 8, counts
+    assert counts["tets"] < stats(result, "fine.json")["counts"]["tets"], "a larger promise takes more"
+    assert error["slice_max_world"] <= error["promised_world"]
+    apart = json.loads(result.stdout)
+    assert 0 < apart["max"] <= error["confirmed_bound_world"] * (1 + 1e-6), (apart, error)
+
+
+def check_columns(result):
+    plain, weighed = stats(result, "plain.json")["error"], stats(result, "weighed.json")["error"]
+    assert weighed["column_velocity_rms"] < plain["column_velocity_rms"], (plain, weighed)
+    assert plain["column_normal_rms"] > 0 and plain["column_normal_max"] >= plain["column_normal_rms"]
+
+
+def check_parts(result):
+    one, three = (json.loads(line) for line in result.stdout.strip().splitlines())
+    assert three["valid"] and [part["isovalue"] for part in three["parts"]] == [0.3, 0.7], three["parts"]
+    assert three["counts"]["tets"] <= 0.2 * one["counts"]["tets"]
 
 
 CASES = [
@@ -48,5 +80,66 @@ CASES = [
         "stdout": ["peak_memory_bytes"],
         "absent": ["x.t4h"],
         "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "a promise is kept, confirmed by slices at a time it covers, and a larger one takes more",
+        "shell": COLUMNS + "hyper-qslim dam.t4h --max-error 0.005 --measure 0 -q -o fine.t4h --stats fine.json; "
+        "hyper-qslim dam.t4h --max-error 0.02 --measure 3 -q -o small.t4h --stats s.json; "
+        "tet4d-convert dam.t4h --at 1f --columns none -q -o a.ply; tet4d-convert small.t4h --at 1f --columns none -q -o b.ply; "
+        "tet4d-report distance a.ply b.ply --json -q",
+        "check": check_promise,
+        "needs": ["tet4d-mc", "tet4d-convert", "tet4d-report"],
+        "timeout": 300,
+    },
+    {
+        "name": "a promise that cannot be kept fails, says how far it came and writes nothing",
+        "shell": COLUMNS + "hyper-qslim dam.t4h --max-error 1e-9 --tries 2 -o x.t4h --stats s.json",
+        "exit": 1,
+        "stderr": ["2 tries did not come to 1e-09", "the least that was measured is", "nothing is written", "--tries"],
+        "absent": ["x.t4h"],
+        "json_file": {"s.json": {"counts.tries": 2, "error.least_measured_world": {"at_least": 1e-9}}},
+        "needs": ["tet4d-mc"],
+        "timeout": 300,
+    },
+    {
+        "name": "columns are carried, their error is measured, and in the metric it is smaller",
+        "shell": COLUMNS + "hyper-qslim dam.t4h --ratio 0.1 --measure 3 -q -o plain.t4h --stats plain.json; "
+        "hyper-qslim dam.t4h --ratio 0.1 --attributes velocity --measure 3 -q -o weighed.t4h --stats weighed.json; "
+        "tet4d-info --validate --json weighed.t4h > info.json",
+        "json_file": {"info.json": {"valid": True, "columns.0.name": "normal", "columns.1.name": "velocity"}},
+        "check": check_columns,
+        "needs": ["tet4d-mc", "tet4d-info"],
+        "timeout": 300,
+    },
+    {
+        "name": "columns that are not asked for are left out",
+        "shell": COLUMNS + "hyper-qslim dam.t4h --ratio 0.1 --columns normal --measure 0 -q -o x.t4h; tet4d-info --json x.t4h",
+        "json": {"columns.0.name": "normal"},
+        "not_stdout": ["velocity\""],
+        "needs": ["tet4d-mc", "tet4d-info"],
+    },
+    {
+        "name": "an attribute that is not there is named, with those that are",
+        "shell": COLUMNS + "hyper-qslim dam.t4h --ratio 0.1 --attributes presure:2 -o x.t4h",
+        "exit": 2,
+        "stderr": ["--attributes", "presure", "normal"],
+        "absent": ["x.t4h"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "a weight of nothing is a usage error",
+        "shell": COLUMNS + "hyper-qslim dam.t4h --ratio 0.1 --attributes velocity:0 -o x.t4h",
+        "exit": 2,
+        "stderr": ["--attributes", "no length above 0"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "parts are simplified one by one and keep their isovalues",
+        "shell": "tet4d-mc {data}/dambreak/alpha_00{08,09,10}.nrrd --iso 0.3,0.7 --stride 2 -q -o two.t4h; "
+        "hyper-qslim two.t4h --ratio 0.2 --measure 3 -q -o small.t4h; tet4d-info --json two.t4h | tr -d '\n'; echo; "
+        "tet4d-info --validate --links --json small.t4h | tr -d '\n'",
+        "check": check_parts,
+        "needs": ["tet4d-mc", "tet4d-info"],
+        "timeout": 300,
     },
 ]

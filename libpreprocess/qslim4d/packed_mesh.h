@@ -1,0 +1,35 @@
+// What is left of a mesh, in the order a file has it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formats/hypermesh.h"
+#include "libpreprocess/outofcore/progress.h"
+#include "libpreprocess/qslim4d/slim_mesh.h"
+
+namespace tet4d::qslim4d {
+
+// The mesh without what is dead: vertices by time, tetrahedra by their first vertex.
+struct PackedMesh {
+  std::vector<Vec4f> vertices;
+  std::vector<hypermesh::Tet> tets;
+  std::vector<std::uint64_t> first_tet;     // by vertex: the first tetrahedron whose least vertex is it or a later one
+  std::vector<std::vector<float>> columns;  // as the mesh's, by vertex
+  float error_estimated = 0;                // world units, for the page table
+  float error_measured = -1;                // -1: not measured
+};
+
+// O(tets log tets).
+PackedMesh pack(const SlimMesh& mesh);
+
+// Writes the parts of a file (phase "write"), one for a file without parts: a page for one frame of a part or for
+// several that have little, pages of all parts by their first time. The writer has as many columns as each part and is
+// not closed. Fewer than 2^32 vertices in all.
+void writeMeshes(std::span<const PackedMesh> parts, hypermesh::Writer& writer, outofcore::Progress& progress);
+
+// As above for a mesh that is the whole file; error_world: of the simplification, estimated.
+void writeMesh(const SlimMesh& mesh, double error_world, hypermesh::Writer& writer, outofcore::Progress& progress);
+
+}  // namespace tet4d::qslim4d

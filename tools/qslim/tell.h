@@ -1,0 +1,32 @@
+// What was done, for --stats and the user.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "tools/common/cli.h"
+#include "tools/qslim/options.h"
+#include "tools/qslim/simplify_parts.h"
+
+namespace tet4d::qslim {
+
+// Over all parts.
+struct Sum {
+  qslim4d::Stats stats;
+  std::uint64_t tets = 0, vertices = 0, tets_in = 0, tries = 0, stalled_tets = 0;
+  qslim4d::NonManifold non_manifold;
+  double bound = 0, estimate = std::numeric_limits<double>::infinity();
+};
+
+Sum sumOf(const std::vector<SimplifiedPart>& parts);
+
+void tell(cli::Session& session, const Options& options, const Sum& sum);
+
+// What --max-error came to where it could not be kept; nothing has been written. Returns the exit code.
+int tellFailure(cli::Session& session, const Options& options, const SimplifiedPart& part);
+
+// What the slices of the output and their columns really lost, by passes that know nothing of quadrics.
+void measure(cli::Session& session, const hypermesh::File& reference, std::uint64_t times);
+
+}  // namespace tet4d::qslim
