@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "formats/hypermesh.h"
 #include "libpreprocess/error.h"
 #include "libpreprocess/measure/slice_distance.h"
+#include "libpreprocess/qslim4d/cells.h"
 #include "libpreprocess/qslim4d/mesh_file.h"
 #include "libpreprocess/qslim4d/simplify.h"
 #include "tools/common/cli.h"
@@ -22,7 +24,7 @@ struct Options {
   std::string input, metric = "slice", order = "passes", codec = "raw";
   std::optional<double> ratio, error, align_time;
   std::optional<std::uint64_t> tets;
-  std::uint64_t choices = 8, most_star = 80, measure_times = 7;
+  std::uint64_t choices = 8, most_star = 80, measure_times = 7, cell_tets = qslim4d::kCellTets;
 };
 
 void checkOptions(const Options& options) {
@@ -37,6 +39,7 @@ void checkOptions(const Options& options) {
   if (options.error && !(*options.error >= 0)) refuse("--error", "expected a length of 0 or more", "give --error 0.5");
   if (options.align_time && !(*options.align_time >= 0))
     refuse("--align-time", "expected a number of 0 or more", "give --align-time 0.25");
+  if (options.cell_tets < 1000) refuse("--cell-tets", "expected at least 1000", "leave it at its default");
   if (options.choices == 0) refuse("--choices", "expected at least 1", "give --choices 8");
   if (options.most_star < 8 || options.most_star > 100'000)
     refuse("--max-star", "expected 8 to 100000", "give --max-star 80");
@@ -82,10 +85,17 @@ void measure(cli::Session& session, const hypermesh::File& reference, std::uint6
   session.note(text);
 }
 
-void tell(cli::Session& session, const qslim4d::SlimMesh& mesh, const qslim4d::Stats& stats, std::uint64_t tets_in) {
+// What was simplified, however it was done.
+struct Outcome {
+  std::uint64_t vertices = 0, tets = 0;
+  qslim4d::Stats stats;
+};
+
+void tell(cli::Session& session, const Outcome& outcome, std::uint64_t tets_in) {
   cli::Stats& record = session.stats();
-  record.count("tets", mesh.live_tets);
-  record.count("vertices", mesh.live_vertices);
+  const qslim4d::Stats& stats = outcome.stats;
+  record.count("tets", outcome.tets);
+  record.count("vertices", outcome.vertices);
   record.count("collapses", stats.collapses);
   record.count("aligned_collapses", stats.aligned);
   static constexpr std::array<const char*, 6> kVerdicts{"allowed",       "refused_walls",     "refused_links",
@@ -96,11 +106,67 @@ void tell(cli::Session& session, const qslim4d::SlimMesh& mesh, const qslim4d::S
   char text[160];
   std::snprintf(
       text, sizeof text, "%llu -> %llu tets, %llu collapses (%.0f %% aligned in time), quadric error %.3g",
-      static_cast<unsigned long long>(tets_in), static_cast<unsigned long long>(mesh.live_tets),
+      static_cast<unsigned long long>(tets_in), static_cast<unsigned long long>(outcome.tets),
       static_cast<unsigned long long>(stats.collapses),
       stats.collapses == 0 ? 0.0 : 100.0 * static_cast<double>(stats.aligned) / static_cast<double>(stats.collapses),
       stats.largest_error);
   session.note(text);
+}
+
+qslim4d::Metric metricOf(const Options& options) {
+  return options.metric == "paper" ? qslim4d::Metric::kPaper : qslim4d::Metric::kSlice;
+}
+
+// The heap has one order for the whole mesh.
+bool isCut(const Options& options, const hypermesh::File& file) {
+  return options.order != "heap" && file.header().tets > options.cell_tets;
+}
+
+Outcome slimInCore(cli::Session& session, const Options& options, const hypermesh::File& file,
+                   hypermesh::Writer& writer) {
+  const auto reserved = session.memory().reserve(qslim4d::boundMemory(file), "the mesh, which is simplified in core");
+  qslim4d::SlimMesh mesh = qslim4d::readMesh(file, metricOf(options), session.progress());
+  const qslim4d::Options slim_options = slimOptions(options, session, mesh.live_tets);
+  const qslim4d::Stats stats = qslim4d::simplify(mesh, slim_options, session.executor(), session.progress());
+  qslim4d::writeMesh(mesh, stats.largest_error, writer, session.progress());
+  return {mesh.live_vertices, mesh.live_tets, stats};
+}
+
+std::string cellFolder(const cli::Session& session) {
+  const std::filesystem::path output = session.options().output, dir = session.options().temp_dir;
+  return ((dir.empty() ? output.parent_path() : dir) / output.filename()).string() + ".cells";
+}
+
+Outcome slimInCells(cli::Session& session, const Options& options, const hypermesh::File& file,
+                    const std::string& provenance, hypermesh::Writer& writer) {
+  qslim4d::CellOptions cells;
+  cells.cell_tets = options.cell_tets;
+  cells.folder = cellFolder(session);
+  cells.run_name = provenance;
+  cells.resume = session.options().resume;
+  const qslim4d::CellReport report = qslim4d::simplifyInCells(
+      file, metricOf(options), slimOptions(options, session, file.header().tets), cells, writer, session.executor(),
+      session.memory(), session.progress());
+  std::string cut;
+  for (std::size_t i = 0; i < report.sweeps.size(); ++i) {
+    const qslim4d::SweepReport& sweep = report.sweeps[i];
+    session.stats().count("cells_of_sweep_" + std::to_string(i + 1), sweep.cells);
+    cut += (i == 0 ? "" : ", then ") + std::to_string(sweep.cells) + (sweep.cells == 1 ? " cell" : " cells") + " to " +
+           std::to_string(sweep.tets_out) + " tets";
+  }
+  session.stats().count("cells_in_flight", report.most_in_flight);
+  session.note(cut);
+  return {report.vertices, report.tets, report.stats};
+}
+
+void printPlan(const Options& options, const hypermesh::File& file) {
+  const bool is_cut = isCut(options, file);
+  const std::uint64_t memory =
+      is_cut ? qslim4d::boundCellMemory(file, options.cell_tets) : qslim4d::boundMemory(file);
+  std::printf("passes %d\npeak_memory_bytes %llu\ntemporary_bytes %llu\noutput_bytes_at_most %llu\n", is_cut ? 3 : 1,
+              static_cast<unsigned long long>(memory),
+              static_cast<unsigned long long>(is_cut ? qslim4d::boundTemporaryBytes(file) : 0),
+              static_cast<unsigned long long>(file.header().tets * 16 + file.header().vertices * 32 + 65536));
 }
 
 int slim(cli::Session& session, const Options& options) {
@@ -109,14 +175,10 @@ int slim(cli::Session& session, const Options& options) {
   const hypermesh::File file = unwrap(hypermesh::File::open(options.input));
   session.dependsOn(options.input);
   warnOfLoss(session, file);
-  const std::uint64_t bound = qslim4d::boundMemory(file);
   if (session.options().dry_run) {
-    std::printf("passes 1\npeak_memory_bytes %llu\ntemporary_bytes 0\noutput_bytes_at_most %llu\n",
-                static_cast<unsigned long long>(bound),
-                static_cast<unsigned long long>(file.header().tets * 16 + file.header().vertices * 32 + 65536));
+    printPlan(options, file);
     return 0;
   }
-  const auto reserved = session.memory().reserve(bound, "the mesh, which is simplified in core");
   hypermesh::Writer writer = [&] {
     hypermesh::MeshHeader header{};
     header.flags = file.header().flags;
@@ -127,22 +189,19 @@ int slim(cli::Session& session, const Options& options) {
                                             options.codec == "zstd" ? paged::Codec::kZstd : paged::Codec::kRaw,
                                             session.options().force));
   }();
-  const auto metric = options.metric == "paper" ? qslim4d::Metric::kPaper : qslim4d::Metric::kSlice;
-  qslim4d::SlimMesh mesh = qslim4d::readMesh(file, metric, session.progress());
-  const std::uint64_t tets_in = mesh.live_tets;
-  const qslim4d::Options slim_options = slimOptions(options, session, tets_in);
-  const qslim4d::Stats stats = qslim4d::simplify(mesh, slim_options, session.executor(), session.progress());
-  if (stats.stalled && !options.error) {
-    session.warn("no collapse is left that keeps the mesh a manifold without flips: " + std::to_string(mesh.live_tets) +
-                 " tets remain");
-  }
-  qslim4d::writeMesh(mesh, stats.largest_error, writer, session.progress());
   char digest[17];
   std::snprintf(digest, sizeof digest, "%016llx", static_cast<unsigned long long>(unwrap(file.contentDigest())));
-  const cli::Input provenance{"hypermesh", digest};
-  unwrap(writer.close(session.provenance({&provenance, 1})));
-  tell(session, mesh, stats, tets_in);
-  if (options.measure_times > 0 && mesh.live_tets > 0) measure(session, file, options.measure_times);
+  const cli::Input input{"hypermesh", digest};
+  const std::string provenance = session.provenance({&input, 1});
+  const Outcome outcome = isCut(options, file) ? slimInCells(session, options, file, provenance, writer)
+                                               : slimInCore(session, options, file, writer);
+  if (outcome.stats.stalled && !options.error) {
+    session.warn("no collapse is left that keeps the mesh a manifold without flips: " + std::to_string(outcome.tets) +
+                 " tets remain");
+  }
+  unwrap(writer.close(provenance));
+  tell(session, outcome, file.header().tets);
+  if (options.measure_times > 0 && outcome.tets > 0) measure(session, file, options.measure_times);
   return 0;
 }
 
@@ -153,6 +212,8 @@ int main(int argc, char** argv) {
   cli::Command command("hyper-qslim", "Simplifies a hypermesh by edge collapses under a quadric error in space-time.");
   command.example("hyper-qslim dam.t4h --ratio 0.1 -o dam-10.t4h", "a tenth of the tetrahedra")
       .example("hyper-qslim dam.t4h --error 0.02 -o dam-fine.t4h", "as few as an error of 0.02 world units allows")
+      .example("hyper-qslim huge.t4h --ratio 0.01 --memory 4G --temp-dir /scratch -o small.t4h",
+               "a mesh larger than memory, cell by cell; --resume goes on after an interrupt")
       .positional("FILE", "hypermesh (.t4h)", &o.input)
       .heading("Stops")
       .option("--ratio", "R", "stop at R times the tetrahedra", &o.ratio)
@@ -162,19 +223,22 @@ int main(int argc, char** argv) {
       .option("--metric", "WHICH", "slice: spatial distance at fixed time; paper: raw 4D normals",
               cli::Choice{&o.metric, {"slice", "paper"}})
       .option("--order", "WHICH",
-              "passes: parallel rounds; multichoice: best of random edges; heap: exact, the slowest",
+              "passes: parallel rounds; multichoice: best of random edges; heap: exact, the slowest, always in core",
               cli::Choice{&o.order, {"passes", "multichoice", "heap"}})
       .option("--choices", "N", "random edges that multichoice compares", &o.choices)
       .option("--align-time", "A",
               "a vertex goes to the time of an end or a frame if that costs up to 1 + A times the least; default 0.25",
               &o.align_time)
       .option("--max-star", "N", "most tetrahedra at a vertex that a collapse may leave", &o.most_star)
+      .option("--cell-tets", "N",
+              "a mesh of more tetrahedra is simplified in cells of at most so many, out of core; not with --order heap",
+              &o.cell_tets)
       .heading("Output")
       .option("--measure", "N", "compare slices at N times with the input's and print the distance; 0: do not",
               &o.measure_times, cli::kKeepsResult)
       .option("--page-codec", "CODEC", "how pages are stored", cli::Choice{&o.codec, {"raw", "zstd"}})
       .heading("General")
-      .common({cli::kOutputRequired, cli::kThreads, cli::kMemory, cli::kForce, cli::kDryRun, cli::kSeed, cli::kStats,
-               cli::kDepfile});
+      .common({cli::kOutputRequired, cli::kThreads, cli::kMemory, cli::kTempDir, cli::kForce, cli::kDryRun, cli::kResume,
+               cli::kSeed, cli::kStats, cli::kDepfile});
   return cli::run(argc, argv, command, [&](cli::Session& session) { return slim(session, o); });
 }

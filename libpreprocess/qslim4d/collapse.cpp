@@ -47,6 +47,7 @@ void keepSingles(std::vector<std::uint64_t>& items) {
 }  // namespace
 
 bool Collapser::evaluate(std::uint32_t u, std::uint32_t v, Placement& placement) const {
+  if (((mesh_->is_boundary[u] | mesh_->is_boundary[v]) & kLocked) != 0) return false;
   const Walls wu = mesh_->walls[u], wv = mesh_->walls[v], both = wu | wv;
   if (both != wu && both != wv) return false;
   const Vec4f& held = mesh_->positions[both == wu ? u : v];
@@ -135,7 +136,7 @@ void Collapser::readBorder(std::uint32_t v, std::vector<Edge>& border) const {
 
 // The same with the boundary coned to one more vertex: its cone over a face of the boundary is a tetrahedron.
 bool Collapser::bordersAllow(std::uint32_t u, std::uint32_t v) {
-  if (mesh_->is_boundary[u] == 0 || mesh_->is_boundary[v] == 0) return true;
+  if ((mesh_->is_boundary[u] & mesh_->is_boundary[v] & kOnBoundary) == 0) return true;
   readBorder(u, border_u_);
   readBorder(v, border_v_);
   const auto touches = [](const std::vector<Edge>& border, std::uint32_t w) {

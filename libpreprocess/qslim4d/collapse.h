@@ -27,8 +27,8 @@ class Collapser {
  public:
   Collapser(SlimMesh& mesh, const CollapseRules& rules) : mesh_(&mesh), rules_(rules) {}
 
-  // False if the walls that the two ends stand on forbid the collapse whatever its place: neither's are among the
-  // other's. Otherwise `placement` is filled in. Reads the two vertices only.
+  // False if the walls that the two ends stand on forbid the collapse whatever its place, neither's being among the
+  // other's, or if an end is locked. Otherwise `placement` is filled in. Reads the two vertices only.
   bool evaluate(std::uint32_t u, std::uint32_t v, Placement& placement) const;
 
   // The whole test at a place that evaluate() gave: link condition of 3-complexes with boundary (Dey et al. 1999, the

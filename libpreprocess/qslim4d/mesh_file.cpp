@@ -14,20 +14,17 @@ namespace tet4d::qslim4d {
 namespace {
 
 constexpr std::uint64_t kMostTets = std::uint64_t{1} << 30;  // corners have u32 numbers
-constexpr std::size_t kLeastPageTets = 16384;                // frames are joined until a page has so many
 
 void checkSize(const hypermesh::File& file) {
   const hypermesh::MeshHeader& header = file.header();
   const auto refuse = [&](const std::string& what, const std::string& remedy) {
     throw Error(FaultCode::kBadInput, file.reader().path(), "", what, remedy);
   };
-  if (header.parts > 1)
-    refuse("has " + std::to_string(header.parts) + " parts, but one part is simplified at a time",
-           "extract one isovalue a file");
+  refuseParts(file);
   if (header.vertices >= kNone || header.tets >= kMostTets)
     refuse("has " + std::to_string(header.vertices) + " vertices and " + std::to_string(header.tets) +
                " tetrahedra, too many to simplify in core (2^32 - 2 and 2^30 - 1)",
-           "crop it, or extract it with a stride");
+           "simplify it in cells, by the order passes or multichoice");
 }
 
 // The mesh without what is dead: vertices by time, tetrahedra by their first vertex.
@@ -80,13 +77,24 @@ std::size_t pageEnd(const Packed& packed, std::size_t begin) {
 
 }  // namespace
 
-std::uint64_t boundMemory(const hypermesh::File& file) {
-  const hypermesh::MeshHeader& header = file.header();
+void refuseParts(const hypermesh::File& file) {
+  if (const std::uint64_t parts = file.header().parts; parts > 1)
+    throw Error(FaultCode::kBadInput, file.reader().path(), "",
+                "has " + std::to_string(parts) + " parts, but one part is simplified at a time",
+                "extract one isovalue a file");
+}
+
+std::uint64_t simplifyBytes(std::uint64_t vertices, std::uint64_t tets) {
   // Edges: about 7 a vertex and 12 bytes each, in a vector that doubles; what a round holds beside them.
   constexpr std::uint64_t kEdgeBytes = 7 * 12 * 2, kRoundBytes = 32;
+  return slimMeshBytes(vertices, tets) + vertices * (kEdgeBytes + kRoundBytes);
+}
+
+std::uint64_t boundMemory(const hypermesh::File& file) {
+  const hypermesh::MeshHeader& header = file.header();
   std::uint64_t page = 0;
   for (std::size_t k = 0; k < file.geometryPages(); ++k) page = std::max(page, file.gatherBytes(k));
-  return slimMeshBytes(header.vertices, header.tets) + header.vertices * (kEdgeBytes + kRoundBytes) + page;
+  return simplifyBytes(header.vertices, header.tets) + page;
 }
 
 SlimMesh readMesh(const hypermesh::File& file, Metric metric, outofcore::Progress& progress) {

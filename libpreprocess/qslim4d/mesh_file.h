@@ -10,6 +10,14 @@
 
 namespace tet4d::qslim4d {
 
+inline constexpr std::size_t kLeastPageTets = 16384;  // frames are joined until a page has so many
+
+// Bytes that simplifying a mesh in core holds at most.
+std::uint64_t simplifyBytes(std::uint64_t vertices, std::uint64_t tets);
+
+// Throws Error{kBadInput} if `file` has several parts.
+void refuseParts(const hypermesh::File& file);
+
 // Bytes that simplifying `file` holds at most: the mesh, its edges, and the pages as they are read.
 std::uint64_t boundMemory(const hypermesh::File& file);
 
