@@ -113,6 +113,10 @@ void writeResult(const std::string& path, const SlimMesh& mesh, std::span<const 
   }
   ResultHeader header{};
   header.vertices = kept.size(), header.tets = mesh.live_tets, header.stats = stats;
+  header.tets_in = mesh.tets.size();
+  const auto locked = std::count_if(mesh.is_boundary.begin(), mesh.is_boundary.end(),
+                                    [](std::uint8_t flags) { return (flags & kLocked) != 0; });
+  header.free_share = 1 - static_cast<double>(locked) / static_cast<double>(std::max<std::size_t>(1, number.size()));
   outofcore::writeFile(path, std::as_bytes(std::span(&header, 1)));
   appendFor<std::uint64_t>(path, kept, [&](std::uint32_t v) { return ids[v]; });
   appendFor<Vec4f>(path, kept, [&](std::uint32_t v) { return mesh.positions[v]; });

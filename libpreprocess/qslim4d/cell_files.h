@@ -62,9 +62,11 @@ LoadedCell loadCell(const CellPaths& paths, std::size_t cell, bool with_quadrics
 std::uint64_t loadBytes(std::uint64_t slots, std::uint64_t tets);
 void removeCell(const CellPaths& paths, std::size_t cell);
 
-// What is left of a cell.
+// What is left of a cell, and what it was.
 struct ResultHeader {
   std::uint64_t vertices, tets;
+  std::uint64_t tets_in;
+  double free_share;  // of its vertices: not locked
   Stats stats;
 };
 
@@ -75,9 +77,10 @@ struct Piece {
   std::span<const std::uint8_t> flags;  // kUncounted; empty: a page of the input
   std::span<const Quadric> quadrics;    // as the flags
   std::span<const hypermesh::Tet> tets;
+  double expected = 1;  // how many should be left in the end for each tetrahedron
 };
 
-// ids, flags: of the vertices of `mesh` before it was simplified. first: it was the first sweep.
+// ids: of the vertices of `mesh`. first: it was the first sweep.
 void writeResult(const std::string& path, const SlimMesh& mesh, std::span<const std::uint64_t> ids, bool first,
                  const Stats& stats);
 ResultHeader readResultHeader(const std::string& path);
@@ -90,7 +93,7 @@ struct CellResult {
   std::vector<std::uint8_t> flags;
   std::vector<Quadric> quadrics;
   std::vector<hypermesh::Tet> tets;
-  Piece piece() const { return {ids, positions, flags, quadrics, tets}; }
+  Piece piece(double expected) const { return {ids, positions, flags, quadrics, tets, expected}; }
 };
 // with_quadrics: else they are left out.
 CellResult readResult(const std::string& path, bool with_quadrics);

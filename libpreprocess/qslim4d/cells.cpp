@@ -9,6 +9,7 @@
 #include "libpreprocess/error.h"
 #include "libpreprocess/exchange/mesh_pages.h"
 #include "libpreprocess/outofcore/record_files.h"
+#include "libpreprocess/qslim4d/cell_targets.h"
 #include "libpreprocess/qslim4d/mesh_file.h"
 #include "libpreprocess/qslim4d/stream_writer.h"
 #include "libpreprocess/qslim4d/sweep.h"
@@ -20,7 +21,8 @@ namespace {
 constexpr std::uint64_t kSamplesPerCell = 1024, kLeastSamples = std::uint64_t{1} << 16,
                         kMostSamples = std::uint64_t{1} << 21;
 constexpr std::uint64_t kLeastBuffers = std::uint64_t{4} << 20, kMostBuffers = std::uint64_t{64} << 20;
-constexpr double kMostReduction = 4;  // of one sweep, where the last is not near: seams must not fall behind
+constexpr double kMostReduction = 4;  // of one sweep: what is locked in it must not fall far behind
+constexpr double kStuck = 0.99;       // a sweep that leaves more of its tetrahedra has nothing to take away
 
 std::uint64_t samplesOf(std::uint64_t tets, std::uint64_t cell_tets) {
   return std::clamp(tets / std::max<std::uint64_t>(1, cell_tets) * kSamplesPerCell, kLeastSamples, kMostSamples);
@@ -36,8 +38,8 @@ std::uint64_t pieceBytes(const hypermesh::File& file) {
   return most;
 }
 
-std::uint64_t resultBytes(const ResultHeader& header) {
-  return header.vertices * (sizeof(CellQuadric) + sizeof(Vec4f) + 25) + header.tets * (sizeof(hypermesh::Tet) + 8);
+std::uint64_t resultBytes(std::uint64_t vertices, std::uint64_t tets) {
+  return vertices * (sizeof(CellQuadric) + sizeof(Vec4f) + 25) + tets * (sizeof(hypermesh::Tet) + 8);
 }
 
 // Buffers, samples, and first users of vertices while a mesh is scattered.
@@ -101,21 +103,21 @@ class Sweeps {
   CellReport sweepAll() {
     CellReport report;
     std::uint64_t tets = file_.header().tets;
-    const double sweeps = std::max(
-        2.0, options_.target_tets == 0
-                 ? 2.0
-                 : std::ceil(std::log(static_cast<double>(tets) / static_cast<double>(options_.target_tets)) /
-                             std::log(kMostReduction)));
+    const double sweeps = plannedSweeps();
     std::vector<std::string> results;  // of the sweep before
-    for (std::size_t sweep = 0; static_cast<double>(sweep) < sweeps; ++sweep) {
+    for (std::size_t sweep = 0;; ++sweep) {
       prepare(sweep, tets, results);
-      setTargets(tets, sweeps - static_cast<double>(sweep));
+      task_.targets = cellTargets(task_.cells, totalOf(tets, sweeps - static_cast<double>(sweep)));
       report.most_in_flight = std::max(report.most_in_flight, runSweep(task_, folder_, executor_, memory_, progress_));
       const SweepReport swept = readSweep(sweep, tets, results, report.stats);
       report.sweeps.push_back(swept);
       tets = swept.tets_out;
-      // One cell has no seam, and was simplified to the end.
+      // One cell has no seam, and was simplified to the end. More sweeps than planned only if they still take away what
+      // was locked in the last one.
       if (sweep > 0 && swept.cells == 1) break;
+      const bool is_done = tets <= options_.target_tets || options_.target_tets == 0;
+      const bool is_stuck = static_cast<double>(tets) > kStuck * static_cast<double>(swept.tets_in);
+      if (static_cast<double>(sweep) + 1 >= sweeps && (is_done || is_stuck)) break;
     }
     report.stats.stalled = tets > options_.target_tets;
     const auto reserved = memory_.reserve(writeBytes(results), "results of a cell, and buffers");
@@ -123,6 +125,13 @@ class Sweeps {
         writeResults(results, report.stats.largest_error, writer_, folder_, buffer_bytes_, progress_);
     report.vertices = written.vertices, report.tets = written.tets;
     return report;
+  }
+
+  double plannedSweeps() const {
+    if (options_.target_tets == 0) return 3;
+    const double reduction =
+        static_cast<double>(file_.header().tets) / static_cast<double>(options_.target_tets);
+    return reduction <= kMostReduction ? 2 : 1 + std::ceil(std::log(reduction) / std::log(kMostReduction));
   }
 
   // Scatters the mesh to the cells of a sweep, unless that is done.
@@ -187,39 +196,34 @@ class Sweeps {
 
   PieceSource pagesOfInput() {
     return [this](const VisitPiece& visit) {
+      const double expected = std::min(1.0, static_cast<double>(options_.target_tets) /
+                                                static_cast<double>(file_.header().tets));
       std::uint64_t pages = 0;
       exchange::forEachPage(file_, [&](const hypermesh::GatheredPage& page) {
         const std::vector<std::uint64_t> ids = exchange::globalNumbers(page.view);
-        visit({ids, page.positions, {}, {}, page.view.tets});
+        visit({ids, page.positions, {}, {}, page.view.tets, expected});
         progress_.step(++pages);
       });
     };
   }
 
   PieceSource piecesOf(const std::vector<std::string>& results) {
-    return [this, &results](const VisitPiece& visit) {
-      std::uint64_t pieces = 0;
-      for (const std::string& path : results) {
-        const CellResult result = readResult(path, true);
-        visit(result.piece());
-        progress_.step(++pieces);
+    std::vector<ResultHeader> headers;
+    for (const std::string& path : results) headers.push_back(readResultHeader(path));
+    return [this, &results, expected = expectedShares(headers, options_.target_tets)](const VisitPiece& visit) {
+      for (std::size_t i = 0; i < results.size(); ++i) {
+        const CellResult result = readResult(results[i], true);
+        visit(result.piece(expected[i]));
+        progress_.step(i + 1);
       }
     };
   }
 
-  // Shares of what is to be left after this sweep, `left` of which are to come, this one among them.
-  void setTargets(std::uint64_t tets, double left) {
+  // What all cells are to leave of `tets` in this sweep, when `left` sweeps are to come, this one among them.
+  std::uint64_t totalOf(std::uint64_t tets, double left) const {
+    if (left <= 1 || (task_.sweep > 0 && task_.cells.size() == 1)) return options_.target_tets;
     const double wanted = static_cast<double>(options_.target_tets), all = static_cast<double>(tets);
-    const bool is_last = left <= 1 || (task_.sweep > 0 && task_.cells.size() == 1);
-    const double total = is_last || wanted >= all ? wanted : all * std::pow(wanted / all, 1 / left);
-    task_.targets.clear();
-    double before = 0, given = 0;
-    for (const CellSize& cell : task_.cells) {
-      before += static_cast<double>(cell.tets);
-      const double until = std::floor(std::min(total, all) * (before / all));
-      task_.targets.push_back(static_cast<std::uint64_t>(until - given));
-      given = until;
-    }
+    return wanted >= all ? options_.target_tets : static_cast<std::uint64_t>(all * std::pow(wanted / all, 1 / left));
   }
 
   // Adds up the results of a sweep and names them.
@@ -248,7 +252,10 @@ class Sweeps {
   }
   static std::uint64_t largestResult(const std::vector<std::string>& results) {
     std::uint64_t most = 0;
-    for (const std::string& path : results) most = std::max(most, resultBytes(readResultHeader(path)));
+    for (const std::string& path : results) {
+      const ResultHeader header = readResultHeader(path);
+      most = std::max(most, resultBytes(header.vertices, header.tets));
+    }
     return most;
   }
 
@@ -276,7 +283,8 @@ std::uint64_t boundCellMemory(const hypermesh::File& file, std::uint64_t cell_te
       std::ceil(1.25 * static_cast<double>(tets) * static_cast<double>(header.vertices) /
                 static_cast<double>(std::max<std::uint64_t>(1, header.tets))));
   const std::uint64_t scattering = fixedBytes(header.vertices, header.tets, cell_tets, kLeastBuffers) + pieceBytes(file);
-  return std::max(cellBytes({tets, 2 * vertices, vertices}), scattering);
+  const std::uint64_t writing = 2 * kLeastBuffers + resultBytes(vertices, tets);
+  return std::max({cellBytes({tets, 2 * vertices, vertices, 0, 0}), scattering, writing});
 }
 
 std::uint64_t boundTemporaryBytes(const hypermesh::File& file) {

@@ -19,6 +19,7 @@ class Ledger {
     mesh_.live_tets -= removed;
     --mesh_.live_vertices;
     ++stats.collapses;
+    stats.removed[costBin(placement.cost)] += removed;
     stats.aligned += placement.aligned ? 1 : 0;
     stats.largest_error = std::max(stats.largest_error, placement.error * mesh_.space.cell);
   }

@@ -64,6 +64,7 @@ class Scatter {
       }
       tets_.add(cell, slots);
       ++sizes_[cell].tets;
+      sizes_[cell].expected += piece.expected;
     }
     addOrphans(piece);
   }
@@ -77,6 +78,15 @@ class Scatter {
       outofcore::removeFile(users_.path(range));
     }
     shared.finish();
+    for (std::size_t cell = 0; cell < sizes_.size(); ++cell) {
+      // A vertex comes once for each piece that has it.
+      auto ids = outofcore::readRecords<std::uint64_t>(shared.path(cell));
+      std::sort(ids.begin(), ids.end());
+      ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+      outofcore::writeFile(shared.path(cell), std::as_bytes(std::span(ids)));
+      sizes_[cell].locked = ids.size();
+      sizes_[cell].vertices += ids.size();
+    }
     return sizes_;
   }
 
@@ -123,13 +133,17 @@ class Scatter {
     outofcore::RecordReader<User> first(users_.path(range), buffer_bytes), second(users_.path(range), buffer_bytes);
     for (User use{}; first.next(use);) {
       std::uint32_t& known = user[use.vertex];
-      if (known == kNone) ++sizes_[use.cell].vertices;
-      known = known == kNone || known == use.cell ? use.cell : kSeveral;
+      if (known == kSeveral || known == use.cell) continue;
+      if (known == kNone) {
+        ++sizes_[use.cell].vertices;
+        known = use.cell;
+      } else {
+        --sizes_[known].vertices;
+        known = kSeveral;
+      }
     }
     for (User use{}; second.next(use);) {
-      if (user[use.vertex] != kSeveral) continue;
-      shared.add(use.cell, range * range_ + use.vertex);
-      ++sizes_[use.cell].vertices;
+      if (user[use.vertex] == kSeveral) shared.add(use.cell, range * range_ + use.vertex);
     }
   }
 

@@ -12,7 +12,8 @@ namespace tet4d::qslim4d {
 // What the files of a cell hold.
 struct CellSize {
   std::uint64_t tets = 0, slots = 0;  // slots: vertices, some more than once
-  std::uint64_t vertices = 0;         // at most; shared ones may count more than once
+  std::uint64_t vertices = 0, locked = 0;  // locked: those that other cells use too
+  double expected = 0;                     // sum over the tetrahedra, see Piece
 };
 
 // Memory of the first users of a range of vertices.

@@ -56,7 +56,7 @@ std::size_t runSweep(const SweepTask& task, outofcore::WorkFolder& folder, outof
     if (folder.isDone(journalLine(task, i))) continue;
     open.push_back(i);
     largest = {std::max(largest.tets, task.cells[i].tets), std::max(largest.slots, task.cells[i].slots),
-               std::max(largest.vertices, task.cells[i].vertices)};
+               std::max(largest.vertices, task.cells[i].vertices), 0, 0};
   }
   if (open.empty()) return 0;
   std::stable_sort(open.begin(), open.end(),
