@@ -108,6 +108,7 @@ class Sweeps {
     for (std::size_t sweep = 0;; ++sweep) {
       prepare(sweep, tets, results);
       task_.targets = cellTargets(task_.cells, totalOf(tets, sweeps - static_cast<double>(sweep)));
+      task_.options.most_error = errorOf(static_cast<double>(sweep) + 1 - sweeps);
       report.most_in_flight = std::max(report.most_in_flight, runSweep(task_, folder_, executor_, memory_, progress_));
       const SweepReport swept = readSweep(sweep, tets, results, report.stats);
       report.sweeps.push_back(swept);
@@ -115,7 +116,7 @@ class Sweeps {
       // One cell has no seam, and was simplified to the end. More sweeps than planned only if they still take away what
       // was locked in the last one.
       if (sweep > 0 && swept.cells == 1) break;
-      const bool is_done = tets <= options_.target_tets || options_.target_tets == 0;
+      const bool is_done = tets <= options_.target_tets;
       const bool is_stuck = static_cast<double>(tets) > kStuck * static_cast<double>(swept.tets_in);
       if (static_cast<double>(sweep) + 1 >= sweeps && (is_done || is_stuck)) break;
     }
@@ -132,6 +133,12 @@ class Sweeps {
     const double reduction =
         static_cast<double>(file_.header().tets) / static_cast<double>(options_.target_tets);
     return reduction <= kMostReduction ? 2 : 1 + std::ceil(std::log(reduction) / std::log(kMostReduction));
+  }
+
+  // The error of a sweep. Where it is the only stop, it is reached in steps, for the reason that shares are: what is
+  // locked must not fall far behind. over: sweeps beyond the last planned one.
+  double errorOf(double over) const {
+    return options_.target_tets == 0 && over < 0 ? options_.most_error * std::exp2(over) : options_.most_error;
   }
 
   // Scatters the mesh to the cells of a sweep, unless that is done.
