@@ -144,9 +144,9 @@ Outcome slimInCells(cli::Session& session, const Options& options, const hyperme
   cells.folder = cellFolder(session);
   cells.run_name = provenance;
   cells.resume = session.options().resume;
-  const qslim4d::CellReport report = qslim4d::simplifyInCells(
-      file, metricOf(options), slimOptions(options, session, file.header().tets), cells, writer, session.executor(),
-      session.memory(), session.progress());
+  const qslim4d::CellReport report =
+      qslim4d::simplifyInCells(file, metricOf(options), slimOptions(options, session, file.header().tets), cells,
+                               writer, session.executor(), session.memory(), session.progress());
   std::string cut;
   for (std::size_t i = 0; i < report.sweeps.size(); ++i) {
     const qslim4d::SweepReport& sweep = report.sweeps[i];
@@ -161,8 +161,7 @@ Outcome slimInCells(cli::Session& session, const Options& options, const hyperme
 
 void printPlan(const Options& options, const hypermesh::File& file) {
   const bool is_cut = isCut(options, file);
-  const std::uint64_t memory =
-      is_cut ? qslim4d::boundCellMemory(file, options.cell_tets) : qslim4d::boundMemory(file);
+  const std::uint64_t memory = is_cut ? qslim4d::boundCellMemory(file, options.cell_tets) : qslim4d::boundMemory(file);
   std::printf("passes %d\npeak_memory_bytes %llu\ntemporary_bytes %llu\noutput_bytes_at_most %llu\n", is_cut ? 3 : 1,
               static_cast<unsigned long long>(memory),
               static_cast<unsigned long long>(is_cut ? qslim4d::boundTemporaryBytes(file) : 0),
@@ -238,7 +237,7 @@ int main(int argc, char** argv) {
               &o.measure_times, cli::kKeepsResult)
       .option("--page-codec", "CODEC", "how pages are stored", cli::Choice{&o.codec, {"raw", "zstd"}})
       .heading("General")
-      .common({cli::kOutputRequired, cli::kThreads, cli::kMemory, cli::kTempDir, cli::kForce, cli::kDryRun, cli::kResume,
-               cli::kSeed, cli::kStats, cli::kDepfile});
+      .common({cli::kOutputRequired, cli::kThreads, cli::kMemory, cli::kTempDir, cli::kForce, cli::kDryRun,
+               cli::kResume, cli::kSeed, cli::kStats, cli::kDepfile});
   return cli::run(argc, argv, command, [&](cli::Session& session) { return slim(session, o); });
 }

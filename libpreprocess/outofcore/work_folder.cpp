@@ -53,7 +53,8 @@ void WorkFolder::open(std::string_view name, bool resume) {
     lines = readLines(journal);
     const bool is_ours = !lines.empty() && lines[0].starts_with(kMagic);
     if (!is_ours && !fs::is_empty(path_, error))
-      fail(path_, "is there already and is not a folder of temporary files", "move it away, or name another --temp-dir");
+      fail(path_, "is there already and is not a folder of temporary files",
+           "move it away, or name another --temp-dir");
     resumed_ = resume && is_ours;
     if (resumed_ && lines[0] != title)
       throw Error(FaultCode::kUsage, path_, "", "was left by a run with other options or another input",

@@ -16,8 +16,8 @@ namespace tet4d::qslim4d {
 // are made and `total` are left: a power law through the collapses made so far, without locked vertices. At most 1.
 std::vector<double> expectedShares(const std::vector<ResultHeader>& results, std::uint64_t total);
 
-// Tetrahedra to keep, by cell: what hangs on locked vertices stays, the rest is shared out by CellSize::expected, so that
-// `total` are left in all; or more, if else the free parts would fall below what is expected in the end.
+// Tetrahedra to keep, by cell: what hangs on locked vertices stays, the rest is shared out by CellSize::expected, so
+// that `total` are left in all; or more, if else the free parts would fall below what is expected in the end.
 std::vector<std::uint64_t> cellTargets(const std::vector<CellSize>& cells, std::uint64_t total);
 
 }  // namespace tet4d::qslim4d

@@ -30,7 +30,8 @@ class FixedGrid {
 };
 
 // Where cells are cut in two: at the middle of their tetrahedra, or after a third and two thirds in turn. No plane of
-// one is one of the other: k/2^m is never j/3^n (measured on a line of 16 cells: a sixth of a cell apart in the median).
+// one is one of the other: k/2^m is never j/3^n (measured on a line of 16 cells: a sixth of a cell apart in the
+// median).
 enum class Cuts { kHalves, kThirds };
 
 class CellTree {

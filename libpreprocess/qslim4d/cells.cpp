@@ -82,8 +82,8 @@ class Sweeps {
       return sweepAll();
     } catch (const Error& error) {
       const FaultCode code = error.fault().code;
-      const bool passes = code == FaultCode::kInterrupted || code == FaultCode::kNoSpace ||
-                          code == FaultCode::kOutOfMemory;
+      const bool passes =
+          code == FaultCode::kInterrupted || code == FaultCode::kNoSpace || code == FaultCode::kOutOfMemory;
       if (!passes || !has_finished_) throw;
       leaveFolder(error.fault());
     } catch (const std::bad_alloc&) {
@@ -130,8 +130,7 @@ class Sweeps {
 
   double plannedSweeps() const {
     if (options_.target_tets == 0) return 3;
-    const double reduction =
-        static_cast<double>(file_.header().tets) / static_cast<double>(options_.target_tets);
+    const double reduction = static_cast<double>(file_.header().tets) / static_cast<double>(options_.target_tets);
     return reduction <= kMostReduction ? 2 : 1 + std::ceil(std::log(reduction) / std::log(kMostReduction));
   }
 
@@ -149,8 +148,10 @@ class Sweeps {
     if (!folder_.isDone(line)) {
       const PieceSource source = sweep == 0 ? pagesOfInput() : piecesOf(results);
       const auto reserved = memory_.reserve(scatterBytes(tets, results), "buffers, and a page or a cell's result");
+      const std::uint64_t pieces = sweep == 0 ? file_.geometryPages() : results.size();
+      progress_.phase("read", pieces);
       const std::vector<FixedPlace> sample = survey(sweep, tets, source);
-      progress_.phase("scatter", sweep == 0 ? file_.geometryPages() : results.size());
+      progress_.phase("scatter", pieces);
       std::array<double, 4> units{};
       for (std::size_t axis = 0; axis < 3; ++axis)
         units[axis] = glm::length(space_.axes[static_cast<int>(axis)]) * grid_.step(axis);
@@ -175,7 +176,6 @@ class Sweeps {
 
   // Every so manieth barycentre; in the first sweep the mean speed of the edges, too.
   std::vector<FixedPlace> survey(std::size_t sweep, std::uint64_t tets, const PieceSource& source) {
-    progress_.phase(sweep == 0 ? "read" : "scatter", sweep == 0 ? file_.geometryPages() : 1);
     const std::uint64_t stride = std::max<std::uint64_t>(1, tets / samplesOf(tets, cells_.cell_tets));
     std::vector<FixedPlace> sample;
     sample.reserve(tets / stride + 1);
@@ -203,8 +203,8 @@ class Sweeps {
 
   PieceSource pagesOfInput() {
     return [this](const VisitPiece& visit) {
-      const double expected = std::min(1.0, static_cast<double>(options_.target_tets) /
-                                                static_cast<double>(file_.header().tets));
+      const double expected =
+          std::min(1.0, static_cast<double>(options_.target_tets) / static_cast<double>(file_.header().tets));
       std::uint64_t pages = 0;
       exchange::forEachPage(file_, [&](const hypermesh::GatheredPage& page) {
         const std::vector<std::uint64_t> ids = exchange::globalNumbers(page.view);
@@ -286,10 +286,11 @@ class Sweeps {
 std::uint64_t boundCellMemory(const hypermesh::File& file, std::uint64_t cell_tets) {
   const hypermesh::MeshHeader& header = file.header();
   const std::uint64_t tets = std::min(header.tets, cell_tets + cell_tets / 8);
-  const auto vertices = static_cast<std::uint64_t>(
-      std::ceil(1.25 * static_cast<double>(tets) * static_cast<double>(header.vertices) /
-                static_cast<double>(std::max<std::uint64_t>(1, header.tets))));
-  const std::uint64_t scattering = fixedBytes(header.vertices, header.tets, cell_tets, kLeastBuffers) + pieceBytes(file);
+  const auto vertices =
+      static_cast<std::uint64_t>(std::ceil(1.25 * static_cast<double>(tets) * static_cast<double>(header.vertices) /
+                                           static_cast<double>(std::max<std::uint64_t>(1, header.tets))));
+  const std::uint64_t scattering =
+      fixedBytes(header.vertices, header.tets, cell_tets, kLeastBuffers) + pieceBytes(file);
   const std::uint64_t writing = 2 * kLeastBuffers + resultBytes(vertices, tets);
   return std::max({cellBytes({tets, 2 * vertices, vertices, 0, 0}), scattering, writing});
 }

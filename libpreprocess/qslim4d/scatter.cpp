@@ -105,7 +105,8 @@ class Scatter {
   }
 
   void addVertex(const Piece& piece, std::uint32_t v, std::uint32_t cell) {
-    if (sizes_[cell].slots >= kNone) throw Error(FaultCode::kBadInput, "", "", "a cell is too large", "lower --cell-tets");
+    if (sizes_[cell].slots >= kNone)
+      throw Error(FaultCode::kBadInput, "", "", "a cell is too large", "lower --cell-tets");
     const std::uint64_t id = piece.ids[v];
     user_[v] = cell;
     slot_[v] = static_cast<std::uint32_t>(sizes_[cell].slots++);

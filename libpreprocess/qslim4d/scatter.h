@@ -11,7 +11,7 @@ namespace tet4d::qslim4d {
 
 // What the files of a cell hold.
 struct CellSize {
-  std::uint64_t tets = 0, slots = 0;  // slots: vertices, some more than once
+  std::uint64_t tets = 0, slots = 0;       // slots: vertices, some more than once
   std::uint64_t vertices = 0, locked = 0;  // locked: those that other cells use too
   double expected = 0;                     // sum over the tetrahedra, see Piece
 };

@@ -42,12 +42,12 @@ inline std::size_t costBin(double cost) {
 
 struct Stats {
   std::uint64_t collapses = 0;
-  std::uint64_t aligned = 0;                // of them with a time that an end or a frame has
-  std::array<std::uint64_t, 6> verdicts{};  // edges judged, by Verdict
-  std::uint64_t rounds = 0;                 // passes, or draws of multichoice
+  std::uint64_t aligned = 0;                       // of them with a time that an end or a frame has
+  std::array<std::uint64_t, 6> verdicts{};         // edges judged, by Verdict
+  std::uint64_t rounds = 0;                        // passes, or draws of multichoice
   std::array<std::uint32_t, kCostBins> removed{};  // tetrahedra, by costBin() of the collapse
-  double largest_error = 0;                 // of the collapses made, by the quadrics: world units
-  bool stalled = false;                     // no allowed collapse was left before the target was reached
+  double largest_error = 0;                        // of the collapses made, by the quadrics: world units
+  bool stalled = false;                            // no allowed collapse was left before the target was reached
 };
 
 // Collapses edges of `mesh` until a stop of `options` holds (phase "simplify"). Throws Error{kInterrupted}.

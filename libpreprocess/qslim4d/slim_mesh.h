@@ -66,8 +66,8 @@ struct CellContext {
 
 // The mesh of these vertices and tetrahedra with stars, walls of `domain`, boundary and quadrics. Throws
 // Error{kBadInput} that names the triangle if one lies in more than two tetrahedra (the link condition has no meaning
-// there). O(tets log star). cell: the mesh is a part of a larger one; a triangle of locked vertices in one tetrahedron is
-// where it was cut, and no boundary.
+// there). O(tets log star). cell: the mesh is a part of a larger one; a triangle of locked vertices in one tetrahedron
+// is where it was cut, and no boundary.
 SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> tets, const Bounds4f& domain,
                       const AffineMap& map, Metric metric, const CellContext* cell = nullptr);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <span>
 
 #include "libpreprocess/error.h"
@@ -82,8 +83,9 @@ std::uint64_t numberVertices(const std::vector<std::string>& results, const std:
 // Collects tetrahedra in order and writes a page whenever whole frames have enough of them.
 class PageStream {
  public:
-  PageStream(std::span<const Vec4f> vertices, double error_world, hypermesh::Writer& writer)
-      : vertices_(vertices), error_world_(error_world), writer_(writer) {}
+  PageStream(std::span<const Vec4f> vertices, double error_world, hypermesh::Writer& writer,
+             const std::function<void()>& written)
+      : vertices_(vertices), error_world_(error_world), writer_(writer), written_(written) {}
 
   void add(const SortedTet& tet) {
     while (tet.first >= end_) {
@@ -113,7 +115,8 @@ class PageStream {
       }
     }
     if (last - begin_ >= kNone)
-      throw Error(FaultCode::kBadInput, "", "", "a page's tetrahedra reach over more than 2^32 vertices", "crop the mesh");
+      throw Error(FaultCode::kBadInput, "", "", "a page's tetrahedra reach over more than 2^32 vertices",
+                  "crop the mesh");
     std::vector<hypermesh::Tet> local(tets_.size());
     for (std::size_t t = 0; t < local.size(); ++t)
       for (std::size_t i = 0; i < 4; ++i) local[t][i] = static_cast<std::uint32_t>(tets_[t][i] - begin_);
@@ -122,11 +125,13 @@ class PageStream {
     writer_.setPageErrors(static_cast<float>(error_world_), -1);
     unwrap(writer_.addPage(vertices_.subspan(begin_, end_ - begin_), runs, local, bounds));
     begin_ = end_;
+    written_();
   }
 
   std::span<const Vec4f> vertices_;
   double error_world_;
   hypermesh::Writer& writer_;
+  const std::function<void()>& written_;  // called after each page
   std::vector<Numbers> tets_;
   std::uint64_t begin_ = 0, end_ = 0;  // the page's own vertices
 };
@@ -134,14 +139,12 @@ class PageStream {
 }  // namespace
 
 WrittenMesh writeResults(const std::vector<std::string>& results, double error_world, hypermesh::Writer& writer,
-                         const outofcore::WorkFolder& folder, std::size_t buffer_bytes,
-                         outofcore::Progress& progress) {
+                         const outofcore::WorkFolder& folder, std::size_t buffer_bytes, outofcore::Progress& progress) {
   progress.phase("write", 2 * results.size());
   BucketFiles vertices(folder.file("write.vertices"), 1, std::size_t{1} << 20);
   BucketFiles numbers(folder.file("write.numbers"), results.size(), buffer_bytes / 4);
   WrittenMesh written;
-  written.vertices =
-      numberVertices(results, folder.file("write.seats"), vertices, numbers, buffer_bytes / 2, progress);
+  written.vertices = numberVertices(results, folder.file("write.seats"), vertices, numbers, buffer_bytes / 2, progress);
   outofcore::ExternalSort<SortedTet, ByFirst> tets(folder.file("write.sorted"), buffer_bytes);
   for (std::size_t cell = 0; cell < results.size(); ++cell) {
     const CellResult result = readResult(results[cell], false);
@@ -156,7 +159,8 @@ WrittenMesh writeResults(const std::vector<std::string>& results, double error_w
     progress.step(results.size() + cell + 1);
   }
   const outofcore::MappedFile mapped(vertices.path(0));
-  PageStream pages(mapped.records<Vec4f>(), error_world, writer);
+  const std::function<void()> mayStop = [&] { progress.step(2 * results.size()); };
+  PageStream pages(mapped.records<Vec4f>(), error_world, writer, mayStop);
   tets.finish([&](const SortedTet& tet) { pages.add(tet); });
   pages.finish();
   outofcore::removeFile(vertices.path(0));

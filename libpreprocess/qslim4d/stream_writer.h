@@ -17,12 +17,11 @@ struct WrittenMesh {
   std::uint64_t vertices = 0, tets = 0;
 };
 
-// results: paths, in the order of the cells. Vertices are numbered by time and then by their numbers in the input, those
-// that no tetrahedron uses left out; tetrahedra stand by their first vertex and then by cells; pages are whole frames.
-// Two external sorts of `buffer_bytes` each, not at a time; beside them a result, and a page as it is written. Throws
-// Error{kInterrupted}.
+// results: paths, in the order of the cells. Vertices are numbered by time and then by their numbers in the input,
+// those that no tetrahedron uses left out; tetrahedra stand by their first vertex and then by cells; pages are whole
+// frames. Two external sorts of `buffer_bytes` each, not at a time; beside them a result, and a page as it is written.
+// Throws Error{kInterrupted}.
 WrittenMesh writeResults(const std::vector<std::string>& results, double error_world, hypermesh::Writer& writer,
-                         const outofcore::WorkFolder& folder, std::size_t buffer_bytes,
-                         outofcore::Progress& progress);
+                         const outofcore::WorkFolder& folder, std::size_t buffer_bytes, outofcore::Progress& progress);
 
 }  // namespace tet4d::qslim4d

@@ -26,8 +26,8 @@ void runCell(const SweepTask& task, std::size_t cell, outofcore::WorkFolder& fol
   const bool first = task.sweep == 0;
   LoadedCell loaded = loadCell(paths, cell, !first);
   const CellContext context{loaded.flags, loaded.quadrics, loaded.ids, task.speed};
-  SlimMesh mesh = makeSlimMesh(std::move(loaded.positions), std::move(loaded.tets), task.domain, task.map, task.metric,
-                               &context);
+  SlimMesh mesh =
+      makeSlimMesh(std::move(loaded.positions), std::move(loaded.tets), task.domain, task.map, task.metric, &context);
   loaded.flags = {}, loaded.quadrics = {};
   Options options = task.options;
   options.target_tets = task.targets[cell];

@@ -112,7 +112,7 @@ CASES = [
     },
     {
         "name": "cells: a full disk leaves what --resume goes on with",
-        "shell": DAM + f"hyper-qslim {CELLS} -o whole.t4h; code=0; (ulimit -f 500; hyper-qslim {CELLS} -o x.t4h) || code=$?; "
+        "shell": DAM + f"hyper-qslim {CELLS} -o whole.t4h; code=0; (ulimit -f 300; hyper-qslim {CELLS} -o x.t4h) || code=$?; "
         f"test $code = 4; test ! -e x.t4h; hyper-qslim {CELLS} --resume -o x.t4h; cmp whole.t4h x.t4h",
         "stderr": ["--resume"],
         "absent": ["x.t4h.cells"],

@@ -8,15 +8,14 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <random>
 #include <set>
 
 #include "libpreprocess/error.h"
 #include "libpreprocess/measure/slice_distance.h"
-#include "libpreprocess/outofcore/record_files.h"
+#include "libpreprocess/outofcore/work_folder.h"
+#include "libpreprocess/qslim4d/cell_files.h"
 #include "libpreprocess/qslim4d/cell_tree.h"
 #include "libpreprocess/qslim4d/mesh_file.h"
-#include "libpreprocess/qslim4d/scatter.h"
 #include "libpreprocess/qslim4d/stream_writer.h"
 #include "libpreprocess/topology/check_hypermesh.h"
 #include "libpreprocess/topology/links.h"
@@ -36,8 +35,8 @@ constexpr testing::MovingBall kBall{{9.2, 9.5, 9}, {0.4, -0.1, 0.2}, 5.4, 0.3};
 marching::ExtractedMesh ball(const std::string& path, bool hole = false) {
   marching::MemoryFrames<float> frames({24, 22, 22}, 9, [&](auto x, auto y, auto z, auto k) {
     if (hole && x > 10 && x < 15 && y > 12 && k > 2 && k < 6) return std::nanf("");
-    return static_cast<float>(kBall.fieldAt(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z),
-                                            static_cast<double>(k)));
+    return static_cast<float>(
+        kBall.fieldAt(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z), static_cast<double>(k)));
   });
   hypermesh::Options options;
   options.iso = 0;
@@ -123,65 +122,6 @@ measure::SliceDistance distance(const std::string& result, const std::string& re
                                 executor, progress);
 }
 
-// ---- where cells are
-
-TEST(CellTree, EveryPlaceHasOneCellAndCellsAreNoLargerThanAsked) {
-  std::mt19937 random(3);
-  std::vector<FixedPlace> places;
-  for (int i = 0; i < 40'000; ++i) {
-    FixedPlace place{};
-    for (std::int64_t& along : place) along = static_cast<std::int64_t>(random() % 100'000);
-    place[2] /= 1000;  // many at the same place along one axis
-    places.push_back(place);
-  }
-  for (const Cuts cuts : {Cuts::kHalves, Cuts::kThirds}) {
-    const CellTree tree(places, places.size(), 1500, cuts, {1, 1, 1, 2});
-    std::vector<std::uint64_t> sizes(tree.cells());
-    for (const FixedPlace& place : places) ++sizes.at(tree.cellOf(place));
-    EXPECT_GT(tree.cells(), 26U);
-    EXPECT_LE(*std::max_element(sizes.begin(), sizes.end()), 1500U);
-    EXPECT_GE(*std::min_element(sizes.begin(), sizes.end()), 400U);
-  }
-  const CellTree one(std::vector<FixedPlace>(1000, FixedPlace{5, 5, 5, 5}), 1000, 10, Cuts::kHalves, {1, 1, 1, 1});
-  EXPECT_EQ(one.cells(), 1U) << "what lies at one place cannot be cut";
-  EXPECT_EQ(CellTree({}, 0, 10, Cuts::kThirds, {1, 1, 1, 1}).cells(), 1U);
-}
-
-TEST(CellTree, PlanesOfHalvesAndThirdsAreApart) {
-  std::vector<FixedPlace> line;
-  for (std::int64_t i = 0; i < 60'000; ++i) line.push_back({i, 0, 0, 0});
-  const auto planes = [&](Cuts cuts) {
-    const CellTree tree(line, line.size(), 4000, cuts, {1, 1, 1, 1});
-    std::vector<std::int64_t> at;
-    for (std::size_t i = 1; i < line.size(); ++i)
-      if (tree.cellOf(line[i]) != tree.cellOf(line[i - 1])) at.push_back(line[i][0]);
-    return at;
-  };
-  const std::vector<std::int64_t> halves = planes(Cuts::kHalves), thirds = planes(Cuts::kThirds);
-  ASSERT_GE(halves.size(), 15U);
-  ASSERT_GE(thirds.size(), 15U);
-  // In one dimension, the worst case: with four, few planes are parallel.
-  std::int64_t nearest = 60'000;
-  std::vector<std::int64_t> distances;
-  for (const std::int64_t a : halves) {
-    std::int64_t least = 60'000;
-    for (const std::int64_t b : thirds) least = std::min(least, std::abs(a - b));
-    nearest = std::min(nearest, least);
-    distances.push_back(least);
-  }
-  std::sort(distances.begin(), distances.end());
-  EXPECT_GT(nearest, 3750 / 20);
-  EXPECT_GT(distances[distances.size() / 2], 3750 / 6) << "of a cell";
-}
-
-TEST(CellTree, FixedPlacesKeepTheOrderOfCoordinates) {
-  const FixedGrid grid(Bounds4f{{-1e7F, 0, 0, 0}, {1e7F, 1e-9F, 0, 64}});
-  const auto along = [&](float x, float y) { return grid.placeOf({x, y, 0, 3}); };
-  EXPECT_LT(along(1e6F, 0)[0], along(std::nextafter(1e6F, 2e6F), 0)[0]);
-  EXPECT_LT(along(0, 1e-10F)[1], along(0, 1.0001e-10F)[1]);
-  EXPECT_EQ(along(0, 0)[2], 0);
-}
-
 // ---- whole meshes
 
 TEST(Cells, TheSameBytesForAnyThreadsAndMemory) {
@@ -198,7 +138,8 @@ TEST(Cells, TheSameBytesForAnyThreadsAndMemory) {
     EXPECT_GT(first.tets, options.target_tets * 9 / 10);
     std::set<std::size_t> in_flight{first.most_in_flight};
     const std::uint64_t least = boundCellMemory(file, file.header().tets / 5);
-    for (const Means& run : {Means{2, 0, order}, Means{4, 0, order}, Means{4, least, order}, Means{3, 2 * least, order}}) {
+    for (const Means& run :
+         {Means{2, 0, order}, Means{4, 0, order}, Means{4, least, order}, Means{3, 2 * least, order}}) {
       in_flight.insert(simplifyTo(out, file, options, file.header().tets / 5, run).most_in_flight);
       EXPECT_TRUE(bytes == bytesOf(out)) << run.threads << " threads, memory " << run.memory;
     }
@@ -278,9 +219,9 @@ TEST(Cells, NoSeamRemains) {
   };
   std::vector<FixedPlace> sums;
   for (const Tet& tet : mesh.tets) sums.push_back(sumOf(tet));
-  const double speed = makeSlimMesh(mesh.vertices, mesh.tets, mesh.header.domain, mesh.header.index_to_world,
-                                    Metric::kSlice)
-                           .space.speed;
+  const double speed =
+      makeSlimMesh(mesh.vertices, mesh.tets, mesh.header.domain, mesh.header.index_to_world, Metric::kSlice)
+          .space.speed;
   const std::uint64_t cell_tets = mesh.tets.size() / 4;
   const CellTree tree(sums, mesh.tets.size(), cell_tets, Cuts::kHalves,
                       {grid.step(0), grid.step(1), grid.step(2), speed * grid.step(3)});
@@ -290,8 +231,7 @@ TEST(Cells, NoSeamRemains) {
     for (const std::uint32_t v : mesh.tets[t]) users[v].insert(tree.cellOf(sums[t]));
   std::set<std::array<float, 4>> seam;
   for (const auto& [v, cells] : users)
-    if (cells.size() > 1)
-      seam.insert({mesh.vertices[v].x, mesh.vertices[v].y, mesh.vertices[v].z, mesh.vertices[v].t});
+    if (cells.size() > 1) seam.insert({mesh.vertices[v].x, mesh.vertices[v].y, mesh.vertices[v].z, mesh.vertices[v].t});
   ASSERT_GT(seam.size(), 200U);
   const CellReport report = simplifyTo(out, file, toTets(mesh.tets.size() / 12), cell_tets);
   EXPECT_GE(report.sweeps[0].cells, 4U);
