@@ -61,9 +61,9 @@ class Appender {
 };
 
 template <class T, class ItemOf>
-void appendFor(const std::string& path, const std::vector<std::uint32_t>& vertices, const ItemOf& itemOf) {
+void appendFor(const std::string& path, const std::vector<std::uint32_t>& vertices, const ItemOf& item_of) {
   Appender<T> items(path);
-  for (const std::uint32_t v : vertices) items.add(itemOf(v));
+  for (const std::uint32_t v : vertices) items.add(item_of(v));
   items.finish();
 }
 

@@ -98,14 +98,16 @@ TEST(CellTargets, AllCellsEndAtOneCost) {
   EXPECT_NEAR(shares[0] * 400'000 + shares[1] * 400'000, 200'000, 1);
   EXPECT_NEAR(shares[1] / shares[0], std::exp2(0.4 * 6), 0.1 * std::exp2(0.4 * 6));
   // What hangs on locked vertices goes later: the law is that of the free part, scaled to the whole.
-  const std::vector<ResultHeader> locked{lawful(1'000'000, 550'000, 0.4, -20, 0.75), lawful(1'000'000, 400'000, 0.4, -20)};
+  const std::vector<ResultHeader> locked{lawful(1'000'000, 550'000, 0.4, -20, 0.75),
+                                         lawful(1'000'000, 400'000, 0.4, -20)};
   const std::vector<double> later = expectedShares(locked, 200'000);
   EXPECT_NEAR(later[0] * 550'000, 100'000, 5'000);
   EXPECT_NEAR(later[1] * 400'000, 100'000, 5'000);
 }
 
 TEST(CellTargets, CellsWhereNothingWentKeepTheirs) {
-  const std::vector<double> shares = expectedShares({lawful(1000, 1000, 0.4, 0), lawful(100'000, 50'000, 0.4, 0)}, 20'000);
+  const std::vector<double> shares =
+      expectedShares({lawful(1000, 1000, 0.4, 0), lawful(100'000, 50'000, 0.4, 0)}, 20'000);
   EXPECT_EQ(shares[0], 1);
   EXPECT_NEAR(shares[1] * 50'000, 19'000, 10);
 }
@@ -115,7 +117,8 @@ TEST(CellTargets, SumToWhatIsAskedForUnlessTooMuchIsLocked) {
     return std::accumulate(targets.begin(), targets.end(), std::uint64_t{0});
   };
   // tets, slots, vertices, locked, expected
-  const std::vector<CellSize> cells{{60'000, 0, 10'000, 1000, 6000}, {60'000, 0, 10'000, 1000, 12'000}, {6000, 0, 1000, 0, 900}};
+  const std::vector<CellSize> cells{
+      {60'000, 0, 10'000, 1000, 6000}, {60'000, 0, 10'000, 1000, 12'000}, {6000, 0, 1000, 0, 900}};
   const std::vector<std::uint64_t> targets = cellTargets(cells, 50'000);
   EXPECT_NEAR(static_cast<double>(sum(targets)), 50'000, 2);
   EXPECT_NEAR(static_cast<double>(targets[1] - 6000), 2 * static_cast<double>(targets[0] - 6000), 5);
