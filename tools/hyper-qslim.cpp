@@ -1,6 +1,7 @@
 // hyper-qslim: a hypermesh → a smaller one. Ponchio & Hormann 2008, sec. 5.
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "libpreprocess/error.h"
 #include "tools/common/cli.h"
 #include "tools/qslim/options.h"
+#include "tools/qslim/simplify_cells.h"
 #include "tools/qslim/simplify_parts.h"
 #include "tools/qslim/tell.h"
 
@@ -36,15 +38,43 @@ hypermesh::Writer createWriter(const cli::Session& session, const hypermesh::Fil
                                           session.options().force, isovalues));
 }
 
-void write(cli::Session& session, const hypermesh::File& file, std::vector<SimplifiedPart> parts,
-           hypermesh::Writer writer) {
+std::string provenanceOf(const cli::Session& session, const hypermesh::File& file) {
+  char digest[17];
+  std::snprintf(digest, sizeof digest, "%016llx", static_cast<unsigned long long>(unwrap(file.contentDigest())));
+  const cli::Input input{"hypermesh", digest};
+  return session.provenance({&input, 1});
+}
+
+void printPlan(const hypermesh::File& file, const Options& options, const std::vector<qslim4d::ColumnWish>& wishes,
+               bool in_cells) {
+  std::uint64_t vertex_bytes = 32;
+  for (const qslim4d::ColumnWish& wish : wishes) vertex_bytes += 4 * file.columns()[wish.column].components;
+  const std::uint64_t passes = in_cells ? 3 : options.max_error ? options.tries : 1;
+  const std::uint64_t memory =
+      in_cells ? qslim4d::boundCellMemory(file, options.cell_tets) : qslim::boundMemory(file, options, wishes);
+  std::printf("passes %llu\npeak_memory_bytes %llu\ntemporary_bytes %llu\noutput_bytes_at_most %llu\n",
+              static_cast<unsigned long long>(passes), static_cast<unsigned long long>(memory),
+              static_cast<unsigned long long>(in_cells ? qslim4d::boundTemporaryBytes(file) : 0),
+              static_cast<unsigned long long>(file.header().tets * 16 + file.header().vertices * vertex_bytes +
+                                              (1 + wishes.size()) * (file.geometryPages() + 1) * 512 + 65536));
+}
+
+// Into `writer`; nothing if a promise could not be kept, of which the user has been told then.
+std::optional<qslim::Sum> simplifyInCore(cli::Session& session, const hypermesh::File& file, const Options& options,
+                                         const std::vector<qslim4d::ColumnWish>& wishes, hypermesh::Writer& writer) {
+  const auto reserved =
+      session.memory().reserve(qslim::boundMemory(file, options, wishes), "the mesh, which is simplified in core");
+  std::vector<SimplifiedPart> parts =
+      qslim::simplifyParts(session, file, options, qslim4d::planColumns(file, wishes, session.progress()));
+  if (!parts.empty() && !parts.back().is_kept) {
+    qslim::tellFailure(session, options, parts.back());
+    return std::nullopt;
+  }
+  const qslim::Sum sum = qslim::sumOf(parts);
   std::vector<qslim4d::PackedMesh> meshes;
   for (SimplifiedPart& part : parts) meshes.push_back(std::move(part.mesh));
   qslim4d::writeMeshes(meshes, writer, session.progress());
-  char digest[17];
-  std::snprintf(digest, sizeof digest, "%016llx", static_cast<unsigned long long>(unwrap(file.contentDigest())));
-  const cli::Input provenance{"hypermesh", digest};
-  unwrap(writer.close(session.provenance({&provenance, 1})));
+  return sum;
 }
 
 int slim(cli::Session& session, const Options& options) {
@@ -53,30 +83,26 @@ int slim(cli::Session& session, const Options& options) {
   const hypermesh::File file = unwrap(hypermesh::File::open(options.input));
   session.dependsOn(options.input);
   const std::vector<qslim4d::ColumnWish> wishes = columnWishes(options, file);
-  const std::uint64_t bound = qslim::boundMemory(file, options, wishes);
+  const std::string why_in_core = qslim::whyInCore(options, file, wishes);
+  const bool in_cells = qslim::isLarge(options, file) && why_in_core.empty();
   if (session.options().dry_run) {
-    std::uint64_t vertex_bytes = 32;
-    for (const qslim4d::ColumnWish& wish : wishes) vertex_bytes += 4 * file.columns()[wish.column].components;
-    std::printf("passes %llu\npeak_memory_bytes %llu\ntemporary_bytes 0\noutput_bytes_at_most %llu\n",
-                static_cast<unsigned long long>(options.max_error ? options.tries : 1),
-                static_cast<unsigned long long>(bound),
-                static_cast<unsigned long long>(file.header().tets * 16 + file.header().vertices * vertex_bytes +
-                                                (1 + wishes.size()) * (file.geometryPages() + 1) * 512 + 65536));
+    printPlan(file, options, wishes, in_cells);
     return 0;
   }
-  const auto reserved = session.memory().reserve(bound, "the mesh, which is simplified in core");
+  if (qslim::isLarge(options, file) && !in_cells)
+    session.note("more than --cell-tets, and yet in core: " + why_in_core);
   hypermesh::Writer writer = createWriter(session, file, options, wishes);
-  std::vector<SimplifiedPart> parts =
-      qslim::simplifyParts(session, file, options, qslim4d::planColumns(file, wishes, session.progress()));
-  if (!parts.empty() && !parts.back().is_kept) return qslim::tellFailure(session, options, parts.back());
-  const qslim::Sum sum = qslim::sumOf(parts);
-  if (sum.stalled_tets > 0 && !options.error && !options.max_error) {
+  const std::string provenance = provenanceOf(session, file);
+  const std::optional<qslim::Sum> sum = in_cells ? qslim::simplifyCells(session, file, options, provenance, writer)
+                                                 : simplifyInCore(session, file, options, wishes, writer);
+  if (!sum) return cli::kExitFailure;
+  if (sum->stalled_tets > 0 && !options.error && !options.max_error) {
     session.warn("no collapse is left that keeps the mesh a manifold without flips: " +
-                 std::to_string(sum.stalled_tets) + " tets remain");
+                 std::to_string(sum->stalled_tets) + " tets remain");
   }
-  write(session, file, std::move(parts), std::move(writer));
-  qslim::tell(session, options, sum);
-  if (options.measure_times > 0 && sum.tets > 0) qslim::measure(session, file, options.measure_times);
+  unwrap(writer.close(provenance));
+  qslim::tell(session, options, *sum);
+  if (options.measure_times > 0 && sum->tets > 0) qslim::measure(session, file, options.measure_times);
   return 0;
 }
 
@@ -88,6 +114,8 @@ int main(int argc, char** argv) {
   command.example("hyper-qslim dam.t4h --ratio 0.1 -o dam-10.t4h", "a tenth of the tetrahedra")
       .example("hyper-qslim dam.t4h --error 0.02 -o dam-fine.t4h", "as few as an error of 0.02 world units allows")
       .example("hyper-qslim dam.t4h --max-error 0.5 -o dam-sure.t4h", "no slice farther off than half a world unit")
+      .example("hyper-qslim huge.t4h --ratio 0.01 --memory 4G --temp-dir /scratch -o small.t4h",
+               "a mesh larger than memory, cell by cell; --resume goes on after an interrupt")
       .positional("FILE", "hypermesh (.t4h)", &o.input)
       .heading("Stops")
       .option("--ratio", "R", "stop at R times the tetrahedra", &o.ratio)
@@ -103,13 +131,17 @@ int main(int argc, char** argv) {
       .option("--metric", "WHICH", "slice: spatial distance at fixed time; paper: raw 4D normals",
               cli::Choice{&o.metric, {"slice", "paper"}})
       .option("--order", "WHICH",
-              "passes: parallel rounds; multichoice: best of random edges; heap: exact, the slowest",
+              "passes: parallel rounds; multichoice: best of random edges; heap: exact, the slowest, always in core",
               cli::Choice{&o.order, {"passes", "multichoice", "heap"}})
       .option("--choices", "N", "random edges that multichoice compares", &o.choices)
       .option("--align-time", "A",
               "a vertex goes to the time of an end or a frame if that costs up to 1 + A times the least; default 0.25",
               &o.align_time)
       .option("--max-star", "N", "most tetrahedra at a vertex that a collapse may leave", &o.most_star)
+      .option("--cell-tets", "N",
+              "a mesh of more tetrahedra is simplified in cells of at most so many, out of core; in core for all that "
+              "with --order heap, --max-error, --non-manifold keep, columns to carry over, or several parts",
+              &o.cell_tets)
       .option(
           "--non-manifold", "WHAT",
           "where more than two tetrahedra meet in a triangle: refuse the mesh, or keep such places, and vertices whose "
@@ -127,7 +159,7 @@ int main(int argc, char** argv) {
               &o.measure_times, cli::kKeepsResult)
       .option("--page-codec", "CODEC", "how pages are stored", cli::Choice{&o.codec, {"raw", "zstd"}})
       .heading("General")
-      .common({cli::kOutputRequired, cli::kThreads, cli::kMemory, cli::kForce, cli::kDryRun, cli::kSeed, cli::kStats,
-               cli::kDepfile});
+      .common({cli::kOutputRequired, cli::kThreads, cli::kMemory, cli::kTempDir, cli::kForce, cli::kDryRun,
+               cli::kResume, cli::kSeed, cli::kStats, cli::kDepfile});
   return cli::run(argc, argv, command, [&](cli::Session& session) { return slim(session, o); });
 }

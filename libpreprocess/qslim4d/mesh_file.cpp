@@ -15,7 +15,7 @@
 namespace tet4d::qslim4d {
 namespace {
 
-constexpr std::uint64_t kMostTets = std::uint64_t{1} << 30;  // corners have u32 numbers
+constexpr std::uint64_t kMostTets = std::uint64_t{3} << 28;  // corners, and room for more, have u32 numbers
 constexpr double kRangeInCells = 10;                         // of a column in the metric without a weight
 
 void checkSize(const hypermesh::File& file) {
@@ -23,8 +23,8 @@ void checkSize(const hypermesh::File& file) {
   if (header.vertices < kNone && header.tets < kMostTets) return;
   throw Error(FaultCode::kBadInput, file.reader().path(), "",
               "has " + std::to_string(header.vertices) + " vertices and " + std::to_string(header.tets) +
-                  " tetrahedra, too many to simplify in core (2^32 - 2 and 2^30 - 1)",
-              "crop it, or extract it with a stride");
+                  " tetrahedra, too many to simplify in core (2^32 - 2 and 2^29 + 2^28 - 1)",
+              "simplify it in cells: one part, --columns none, --order passes or multichoice");
 }
 
 // The numbers a part's vertices get: those of its pages in a row.
@@ -117,10 +117,14 @@ Arrays readPages(const hypermesh::File& file, const PartNumbers& numbers, const 
 
 }  // namespace
 
-std::uint64_t boundMemory(const hypermesh::File& file, std::span<const ColumnWish> columns) {
-  const hypermesh::MeshHeader& header = file.header();
+std::uint64_t simplifyBytes(std::uint64_t vertices, std::uint64_t tets) {
   // The list: 2.5 edges a vertex and 12 bytes each; what a round holds beside it.
   constexpr std::uint64_t kEdgeBytes = 40, kRoundBytes = 32;
+  return slimMeshBytes(vertices, tets) + vertices * (kEdgeBytes + kRoundBytes);
+}
+
+std::uint64_t boundMemory(const hypermesh::File& file, std::span<const ColumnWish> columns) {
+  const hypermesh::MeshHeader& header = file.header();
   std::uint64_t page = 0, column_bytes = 0, terms = 0;
   for (std::size_t k = 0; k < file.geometryPages(); ++k) page = std::max(page, file.gatherBytes(k));
   for (const ColumnWish& wish : columns) {
@@ -129,8 +133,7 @@ std::uint64_t boundMemory(const hypermesh::File& file, std::span<const ColumnWis
     terms += wish.in_metric ? components : 0;
   }
   if (terms > 0) column_bytes += sizeof(Quadric) + terms * sizeof(AttributeTerm);
-  return slimMeshBytes(header.vertices, header.tets) + header.vertices * (kEdgeBytes + kRoundBytes + column_bytes) +
-         page;
+  return simplifyBytes(header.vertices, header.tets) + header.vertices * column_bytes + page;
 }
 
 std::vector<PlannedColumn> planColumns(const hypermesh::File& file, std::span<const ColumnWish> wishes,
@@ -184,7 +187,8 @@ SlimMesh readMesh(const hypermesh::File& file, const ReadOptions& options, outof
   Arrays arrays = readPages(file, numbers, options.columns, progress);
   try {
     SlimMesh mesh = makeSlimMesh(std::move(arrays.positions), std::move(arrays.tets), file.header().domain,
-                                 file.header().index_to_world, options.metric, options.keep_non_manifold);
+                                 file.header().index_to_world, options.metric,
+                                 {options.keep_non_manifold, options.executor, nullptr});
     if (options.keep_non_manifold) {
       const NonManifold places = lockNonManifold(mesh);
       if (found != nullptr) *found = places;

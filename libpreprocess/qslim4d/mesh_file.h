@@ -15,6 +15,9 @@
 
 namespace tet4d::qslim4d {
 
+// Bytes that simplifying a mesh in core holds at most.
+std::uint64_t simplifyBytes(std::uint64_t vertices, std::uint64_t tets);
+
 // What is to become of a column.
 struct ColumnWish {
   std::size_t column = 0;  // of file.columns()

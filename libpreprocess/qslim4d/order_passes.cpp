@@ -87,7 +87,7 @@ class Passes {
     std::uint32_t removed;
     Verdict verdict;
     bool aligned;
-    double error;
+    double cost, error;
   };
 
   void inChunks(std::size_t count, std::size_t chunk, const std::function<void(std::size_t, std::size_t)>& work) {
@@ -216,7 +216,7 @@ class Passes {
       const auto [u, v, cost] = edges_[i];
       if (claimed_[u] == stamp_ || claimed_[v] == stamp_) continue;
       claimStar(u), claimStar(v);
-      chosen_.push_back({u, v, i, 0, Verdict::kAllowed, false, 0});
+      chosen_.push_back({u, v, i, 0, Verdict::kAllowed, false, 0, 0});
     }
     // What lies side by side in memory is collapsed one after the other.
     std::sort(chosen_.begin(), chosen_.end(), [](const Chosen& a, const Chosen& b) { return a.u < b.u; });
@@ -235,7 +235,7 @@ class Passes {
         Chosen& chosen = chosen_[i];
         Placement placement;
         static_cast<void>(collapser.evaluate(chosen.u, chosen.v, placement));
-        chosen.aligned = placement.aligned, chosen.error = placement.error;
+        chosen.aligned = placement.aligned, chosen.cost = placement.cost, chosen.error = placement.error;
         chosen.verdict = collapser.judge(chosen.u, chosen.v, placement.at);
         if (chosen.verdict == Verdict::kAllowed) chosen.removed = collapser.merge(chosen.u, chosen.v, placement.at);
       }
@@ -245,7 +245,7 @@ class Passes {
       ledger_.judged(chosen.verdict);
       edges_[chosen.edge].cost = kNever;
       if (chosen.verdict != Verdict::kAllowed) continue;
-      ledger_.collapsed(chosen.removed, chosen.aligned, chosen.error);
+      ledger_.collapsed(chosen.removed, chosen.cost, chosen.aligned, chosen.error);
       moved.push_back(chosen.u);
       merged_[chosen.u] = merged_[chosen.v] = 1;
     }

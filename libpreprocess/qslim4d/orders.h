@@ -16,12 +16,13 @@ class Ledger {
   bool isAllowed(const Placement& placement) const { return placement.error <= most_error_; }
   void judged(Verdict verdict) { ++stats.verdicts[static_cast<std::size_t>(verdict)]; }
   void collapsed(std::uint32_t removed, const Placement& placement) {
-    collapsed(removed, placement.aligned, placement.error);
+    collapsed(removed, placement.cost, placement.aligned, placement.error);
   }
-  void collapsed(std::uint32_t removed, bool aligned, double error) {
+  void collapsed(std::uint32_t removed, double cost, bool aligned, double error) {
     mesh_.live_tets -= removed;
     --mesh_.live_vertices;
     ++stats.collapses;
+    stats.removed[costBin(cost)] += removed;
     stats.aligned += aligned ? 1 : 0;
     stats.largest_error = std::max(stats.largest_error, error * mesh_.space.cell);
   }

@@ -10,8 +10,6 @@
 namespace tet4d::qslim4d {
 namespace {
 
-constexpr std::size_t kLeastPageTets = 16384;  // frames are joined until a page has so many
-
 // Vertices begin .. end - 1 of a part.
 struct Page {
   std::size_t part = 0, begin = 0, end = 0;

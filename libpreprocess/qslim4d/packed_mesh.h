@@ -11,6 +11,8 @@
 
 namespace tet4d::qslim4d {
 
+inline constexpr std::size_t kLeastPageTets = 16384;  // frames are joined until a page has so many
+
 // The mesh without what is dead: vertices by time, tetrahedra by their first vertex.
 struct PackedMesh {
   std::vector<Vec4f> vertices;

@@ -4,7 +4,10 @@
 // In core. Deterministic: the result depends on the mesh and the options, not on the number of threads.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -31,13 +34,20 @@ struct Options {
   CollapseRules rules;
 };
 
+// Collapses by what they cost: a bin for every half octave.
+inline constexpr std::size_t kCostBins = 512;
+inline std::size_t costBin(double cost) {
+  return cost > 0 ? static_cast<std::size_t>(std::clamp(2 * std::log2(cost) + 320, 0.0, double{kCostBins - 1})) : 0;
+}
+
 struct Stats {
   std::uint64_t collapses = 0;
-  std::uint64_t aligned = 0;                // of them with a time that an end or a frame has
-  std::array<std::uint64_t, 6> verdicts{};  // edges judged, by Verdict
-  std::uint64_t rounds = 0;                 // passes, or draws of multichoice
-  double largest_error = 0;                 // of the collapses made, by the quadrics: world units
-  bool stalled = false;                     // no allowed collapse was left before the target was reached
+  std::uint64_t aligned = 0;                       // of them with a time that an end or a frame has
+  std::array<std::uint64_t, 6> verdicts{};         // edges judged, by Verdict
+  std::uint64_t rounds = 0;                        // passes, or draws of multichoice
+  std::array<std::uint32_t, kCostBins> removed{};  // tetrahedra, by costBin() of the collapse
+  double largest_error = 0;                        // of the collapses made, by the quadrics: world units
+  bool stalled = false;                            // no allowed collapse was left before the target was reached
 };
 
 // Collapses edges of `mesh` until a stop of `options` holds (phase "simplify"). Throws Error{kInterrupted}.

@@ -34,7 +34,6 @@ Walls wallsOf(const Vec4f& v, const Bounds4f& domain) {
   return static_cast<Walls>(walls);
 }
 
-// Mean reach of the tetrahedra's edges in space over that in time.
 double speedOf(const SlimMesh& mesh) {
   double space = 0, time = 0;
   for (const hypermesh::Tet& tet : mesh.tets) {
@@ -44,7 +43,7 @@ double speedOf(const SlimMesh& mesh) {
       time += std::abs(edge.w);
     }
   }
-  return space > 0 && time > 0 ? space / time : 1;
+  return speedFrom(space, time);
 }
 
 void addTetQuadric(SlimMesh& mesh, const hypermesh::Tet& tet, Metric metric) {
@@ -83,9 +82,11 @@ void addBoundaryQuadric(SlimMesh& mesh, const Face& face, std::uint32_t apex, Me
   for (const std::uint32_t w : face) mesh.quadrics[w].addPlane(plane, scale, 0);
 }
 
-[[noreturn]] void refuseFace(const Face& face) {
+[[noreturn]] void refuseFace(Face face, const CellContext* cell) {
+  std::array<std::uint64_t, 3> names{face[0], face[1], face[2]};
+  if (cell != nullptr) names = {cell->names[face[0]], cell->names[face[1]], cell->names[face[2]]};
   throw Error(FaultCode::kBadInput, "",
-              "triangle " + std::to_string(face[0]) + " " + std::to_string(face[1]) + " " + std::to_string(face[2]),
+              "triangle " + std::to_string(names[0]) + " " + std::to_string(names[1]) + " " + std::to_string(names[2]),
               "lies in more than two tetrahedra: the mesh is no manifold there",
               "see tet4d-info --validate for all such places, and mend the mesh, or give --non-manifold keep");
 }
@@ -147,7 +148,7 @@ std::vector<SeenFace> boundaryFaces(const SlimMesh& mesh, const MeshContext& con
   });
   std::vector<SeenFace> faces;
   for (const Found& some : found) {
-    if (some.refused) refuseFace(*some.refused);
+    if (some.refused) refuseFace(*some.refused, context.cell);
     faces.insert(faces.end(), some.faces.begin(), some.faces.end());
   }
   return faces;
@@ -155,8 +156,14 @@ std::vector<SeenFace> boundaryFaces(const SlimMesh& mesh, const MeshContext& con
 
 // Marks boundary vertices, and holds what of the boundary is on no wall.
 void findBoundary(SlimMesh& mesh, Metric metric, const MeshContext& context) {
+  const auto allHave = [&](const Face& face, std::uint8_t flag) {
+    return (mesh.is_boundary[face[0]] & mesh.is_boundary[face[1]] & mesh.is_boundary[face[2]] & flag) != 0;
+  };
+  const bool has_terms = context.cell != nullptr && !context.cell->quadrics.empty();
   for (const auto& [face, apex] : boundaryFaces(mesh, context)) {
+    if (context.cell != nullptr && allHave(face, kLocked)) continue;  // cut, not bounded
     for (const std::uint32_t w : face) mesh.is_boundary[w] |= kOnBoundary;
+    if (has_terms && !allHave(face, kUncounted)) continue;
     if ((mesh.walls[face[0]] & mesh.walls[face[1]] & mesh.walls[face[2]]) == 0)
       addBoundaryQuadric(mesh, face, apex, metric);
   }
@@ -164,8 +171,11 @@ void findBoundary(SlimMesh& mesh, Metric metric, const MeshContext& context) {
 
 }  // namespace
 
+double speedFrom(double space, double time) { return space > 0 && time > 0 ? space / time : 1; }
+
 SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> tets, const Bounds4f& domain,
                       const AffineMap& map, Metric metric, const MeshContext& context) {
+  const CellContext* cell = context.cell;
   SlimMesh mesh;
   mesh.positions = std::move(positions);
   mesh.tets = std::move(tets);
@@ -177,13 +187,17 @@ SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> 
   outofcore::reserveHuge(mesh.stars, mesh.positions.size());
   mesh.stars.resize(mesh.positions.size());
   tidy(mesh);
-  mesh.space.speed = speedOf(mesh);
+  mesh.space.speed = cell != nullptr ? cell->speed : speedOf(mesh);
   outofcore::reserveHuge(mesh.quadrics, mesh.positions.size());
   mesh.quadrics.resize(mesh.positions.size());
   mesh.is_boundary.assign(mesh.positions.size(), 0);
+  const bool has_quadrics = cell != nullptr && !cell->quadrics.empty();
+  if (has_quadrics) mesh.quadrics.assign(cell->quadrics.begin(), cell->quadrics.end());
+  if (cell != nullptr) mesh.is_boundary.assign(cell->flags.begin(), cell->flags.end());
   mesh.walls.reserve(mesh.positions.size());
   for (const Vec4f& v : mesh.positions) mesh.walls.push_back(wallsOf(v, domain));
-  for (const hypermesh::Tet& tet : mesh.tets) addTetQuadric(mesh, tet, metric);
+  if (!has_quadrics)
+    for (const hypermesh::Tet& tet : mesh.tets) addTetQuadric(mesh, tet, metric);
   findBoundary(mesh, metric, context);
   return mesh;
 }

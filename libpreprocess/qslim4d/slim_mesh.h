@@ -36,6 +36,13 @@ enum class Metric {
   kPaper,  // sum of N N^T with the raw 4D cross product N
 };
 
+// What is known of a vertex beside its walls, or-ed together.
+enum VertexFlags : std::uint8_t {
+  kOnBoundary = 1,  // it lies in a triangle of one tetrahedron
+  kLocked = 2,      // tetrahedra outside this mesh use it: it stays as it is
+  kUncounted = 4,   // it was locked whenever free boundaries were looked for so far
+};
+
 // Where a vertex's corners stand in SlimMesh::corners; none: the vertex is dead or unused.
 struct Star {
   std::uint32_t begin = 0;
@@ -50,7 +57,7 @@ struct SlimMesh {
   std::vector<Star> stars;             // by vertex
   std::vector<Quadric> quadrics;       // by vertex, about the vertex
   std::vector<Walls> walls;
-  std::vector<std::uint8_t> is_boundary;  // by vertex: flags, kOnBoundary and kLocked
+  std::vector<std::uint8_t> is_boundary;  // by vertex: VertexFlags
   Columns columns;                        // values at the vertices; takes nothing where there are none
   std::uint64_t live_tets = 0, live_vertices = 0;
   Space space;
@@ -79,10 +86,20 @@ struct SlimMesh {
   }
 };
 
+// Of a mesh that is a cell of a larger one (cells.h): what it brings along.
+struct CellContext {
+  std::span<const std::uint8_t> flags;   // by vertex: kLocked and kUncounted
+  std::span<const Quadric> quadrics;     // by vertex, from before; empty: they are made from the tetrahedra
+  std::span<const std::uint64_t> names;  // by vertex: its number in the larger mesh, for messages
+  double speed = 1;                      // of the larger mesh, see Space
+};
+
 // What a mesh is made with beside its arrays.
 struct MeshContext {
   bool keep_non_manifold = false;           // a triangle of more than two tetrahedra is no refusal
   outofcore::Executor* executor = nullptr;  // who looks for the boundary; without one, the caller
+  const CellContext* cell = nullptr;        // the mesh is a part of a larger one; a triangle of locked vertices
+                                            // in one tetrahedron is where it was cut, and no boundary
 };
 
 // The mesh of these vertices and tetrahedra with stars, walls of `domain`, boundary and quadrics. Throws
@@ -97,6 +114,9 @@ void tidy(SlimMesh& mesh);
 
 // Makes room for `count` more corners, by tidy() if there is none.
 void makeRoom(SlimMesh& mesh, std::uint64_t count);
+
+// Mean reach of the tetrahedra's edges in space over that in time, from their sums; 1 if either is 0.
+double speedFrom(double space, double time);
 
 // Bytes of a mesh of so many vertices and tetrahedra, with what building it takes.
 std::uint64_t slimMeshBytes(std::uint64_t vertices, std::uint64_t tets);

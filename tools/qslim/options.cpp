@@ -71,9 +71,14 @@ void checkOptions(const Options& options) {
   if (options.tries < 1 || options.tries > 100) refuse("--tries", "expected 1 to 100", "give --tries 8");
   if (options.align_time && !(*options.align_time >= 0))
     refuse("--align-time", "expected a number of 0 or more", "give --align-time 0.25");
+  if (options.cell_tets < 1000) refuse("--cell-tets", "expected at least 1000", "leave it at its default");
   if (options.choices == 0) refuse("--choices", "expected at least 1", "give --choices 8");
   if (options.most_star < 8 || options.most_star > 100'000)
     refuse("--max-star", "expected 8 to 100000", "give --max-star 80");
+}
+
+qslim4d::Metric metricOf(const Options& options) {
+  return options.metric == "paper" ? qslim4d::Metric::kPaper : qslim4d::Metric::kSlice;
 }
 
 qslim4d::Options slimOptions(const Options& options, std::uint64_t seed, std::uint64_t part_tets,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/hypermesh.h"
+#include "libpreprocess/qslim4d/cells.h"
 #include "libpreprocess/qslim4d/mesh_file.h"
 #include "libpreprocess/qslim4d/simplify.h"
 #include "tools/common/cli.h"
@@ -18,11 +19,13 @@ struct Options {
                      attributes = "none";
   std::optional<double> ratio, error, max_error, align_time;
   std::optional<std::uint64_t> tets;
-  std::uint64_t choices = 8, most_star = 80, measure_times = 7, tries = 8;
+  std::uint64_t choices = 8, most_star = 80, measure_times = 7, tries = 8, cell_tets = qslim4d::kCellTets;
 };
 
 // Throws Error{kUsage} for what makes no sense.
 void checkOptions(const Options& options);
+
+qslim4d::Metric metricOf(const Options& options);
 
 // Of a part that has `part_tets` of the file's `all_tets`: --ratio of its own, its share of --tets.
 qslim4d::Options slimOptions(const Options& options, std::uint64_t seed, std::uint64_t part_tets,

@@ -88,7 +88,7 @@ std::vector<SimplifiedPart> simplifyParts(cli::Session& session, const hypermesh
                                           const std::vector<qslim4d::PlannedColumn>& columns) {
   const std::vector<std::uint64_t> tets = qslim4d::tetsByPart(file);
   qslim4d::ReadOptions read_options;
-  read_options.metric = options.metric == "paper" ? qslim4d::Metric::kPaper : qslim4d::Metric::kSlice;
+  read_options.metric = metricOf(options);
   read_options.keep_non_manifold = options.non_manifold == "keep";
   read_options.columns = columns;
   std::vector<SimplifiedPart> parts;
