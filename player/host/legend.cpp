@@ -20,7 +20,8 @@ std::string numberText(double value, double step) {
   std::array<char, 40> text{};
   const double largest = std::max(std::abs(value), step);
   if (value != 0 && (largest >= 1e6 || step < 1e-4)) {
-    const int digits = static_cast<int>(std::ceil(std::log10(std::abs(value) / step) - 1e-9));
+    const auto power = [](double x) { return static_cast<int>(std::floor(std::log10(x) + 1e-9)); };
+    const int digits = power(std::abs(value)) - power(step);
     std::snprintf(text.data(), text.size(), "%.*e", std::clamp(digits, 0, 8), value);
     std::string written = text.data();
     // 1.5e-07 as 1.5e-7.
