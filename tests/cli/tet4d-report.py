@@ -215,7 +215,7 @@ CASES = [
         "name": "a misspelt command",
         "run": ["tet4d-report", "plya"],
         "exit": 2,
-        "stderr": ["tet4d-report: 'plya': is no command; there are mc, stiff, play", "did you mean play?"],
+        "stderr": ["tet4d-report: 'plya': is no command; there are mc, stiff, qslim, play", "did you mean play?"],
     },
     {"name": "no command", "run": ["tet4d-report"], "exit": 2, "stderr": ["no command is given"]},
     {
