@@ -33,10 +33,10 @@ inline std::string columnsThere(std::span<const ColumnEntry> columns) {
 }
 
 // Ranks of the columns named, in the order of the list; throws kUsage for a name that is not there or stands twice.
-// remedyOf: what to do about a name that is not there, if there is something special to say.
+// remedy_of: what to do about a name that is not there, if there is something special to say.
 inline std::vector<std::size_t> namedColumns(std::span<const ColumnEntry> columns, const std::string& list,
                                              const std::string& file,
-                                             const char* (*remedyOf)(const std::string& name) = nullptr) {
+                                             const char* (*remedy_of)(const std::string& name) = nullptr) {
   std::vector<std::size_t> named;
   if (list == "none") return named;
   if (list == "all") {
@@ -49,7 +49,7 @@ inline std::vector<std::size_t> namedColumns(std::span<const ColumnEntry> column
     begin = end + 1;
     const auto found = findColumn(columns, name);
     if (!found) {
-      const char* remedy = remedyOf == nullptr ? nullptr : remedyOf(name);
+      const char* remedy = remedy_of == nullptr ? nullptr : remedy_of(name);
       throw Error(FaultCode::kUsage, file, "--columns", "there is no column \"" + name + "\"; " + columnsThere(columns),
                   remedy != nullptr ? remedy : "name one of those, all or none");
     }
