@@ -9,6 +9,13 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
+CacheOrder::CacheOrder(std::size_t edges, std::size_t longest) : of_edge_(edges) {
+  next_.reserve(3 * longest);
+  emitted_.reserve(longest);
+  order_.reserve(longest);
+  dead_ends_.reserve(3 * longest);
+}
+
 // Lists of corners, each in the order of the triangles: they are hung in from the last to the first.
 void CacheOrder::link(std::span<const Triangle> triangles) {
   next_.resize(3 * triangles.size());

@@ -17,10 +17,11 @@ inline constexpr std::uint32_t kCacheEntries = 16;
 // vertex in turn, then those at the vertex that will stay in the cache and has been there longest.
 class CacheOrder {
  public:
-  explicit CacheOrder(std::size_t edges) : of_edge_(edges) {}
+  // For runs of at most `longest` triangles, made of edges 0 … edges - 1.
+  CacheOrder(std::size_t edges, std::size_t longest);
 
-  // Held at most, of an edge and of a triangle of the longest run, while lists grow too.
-  static constexpr std::size_t kBytesAnEdge = 12, kBytesATriangle = 3 * 4 + 1 + 3 * 4 + 3 * 3 * 4;
+  // Held, of an edge and of a triangle of the longest run.
+  static constexpr std::size_t kBytesAnEdge = 12, kBytesATriangle = 3 * 4 + 1 + 4 + 3 * 4;
 
   // The numbers 0 … n - 1 of `triangles` in their new order; valid until the next call. Depends on the run alone,
   // however the edges are numbered. O(n).

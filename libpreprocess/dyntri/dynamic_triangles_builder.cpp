@@ -79,10 +79,14 @@ std::vector<std::uint64_t> sortByBucket(const RawTriangles& raw, std::span<const
 
 // Orders the triangles of each bucket for vertex caches.
 void orderBuckets(std::span<const std::uint64_t> ends, std::size_t edges, BuiltPage& page) {
-  CacheOrder cache(edges);
+  std::size_t first = 0, longest = 0;
+  for (const std::size_t end : ends) longest = std::max(longest, end - first), first = end;
+  CacheOrder cache(edges, longest);
   std::vector<Triangle> triangles;
   std::vector<Lifespan> lives;
-  std::size_t first = 0;
+  triangles.reserve(longest);
+  lives.reserve(longest);
+  first = 0;
   for (const std::size_t end : ends) {
     const auto of_bucket = std::span(page.triangles).subspan(first, end - first);
     const auto lives_of_bucket = std::span(page.lifespans).subspan(first, end - first);

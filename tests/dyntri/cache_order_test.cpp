@@ -77,7 +77,7 @@ std::vector<Triangle> grid(std::uint32_t side) {
 TEST(CacheOrder, AGridInAnyOrderNeedsLittleMoreThanHalfAVertexATriangle) {
   constexpr std::uint32_t kSide = 70, kVertices = (kSide + 1) * (kSide + 1);
   std::vector<Triangle> triangles = grid(kSide);
-  CacheOrder cache(kVertices);
+  CacheOrder cache(kVertices, triangles.size());
   EXPECT_GT(missesOf(triangles, kVertices, kCacheEntries), 0.95) << "row by row, the row before has gone";
   EXPECT_LT(missesOf(inOrder(triangles, cache.order(triangles)), kVertices, kCacheEntries), 0.75);
   std::mt19937 random(3);
@@ -89,7 +89,7 @@ TEST(CacheOrder, AGridInAnyOrderNeedsLittleMoreThanHalfAVertexATriangle) {
 TEST(CacheOrder, IsAPermutationThatDependsOnTheRunAlone) {
   std::vector<Triangle> triangles = grid(9);
   triangles.insert(triangles.end(), triangles.begin(), triangles.begin() + 20);  // the same edges again
-  CacheOrder used(400), fresh(1000);
+  CacheOrder used(400, 300), fresh(1000, triangles.size());
   used.order(grid(12));
   const auto first = used.order(triangles);
   std::vector<Triangle> renumbered(triangles);
