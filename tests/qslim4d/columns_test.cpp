@@ -225,7 +225,7 @@ TEST_P(ColumnOrders, RangesLabelsAndNormalsHoldUnderNoise) {
   const auto& list = slim.columns.list;
   std::uint64_t live = 0, unknown = 0;
   forEachLive(slim, [&](std::uint32_t v) {
-    for (const std::size_t c : {0, 1}) {
+    for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {
       EXPECT_GE(list[c].values[v], list[c].low[0]);
       EXPECT_LE(list[c].values[v], list[c].high[0]);
     }
