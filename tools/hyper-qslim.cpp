@@ -10,6 +10,7 @@
 #include "libpreprocess/column_list.h"
 #include "libpreprocess/error.h"
 #include "tools/common/cli.h"
+#include "tools/common/exit_codes.h"
 #include "tools/qslim/options.h"
 #include "tools/qslim/simplify_cells.h"
 #include "tools/qslim/simplify_parts.h"

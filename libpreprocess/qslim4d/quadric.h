@@ -10,7 +10,7 @@
 
 namespace tet4d::qslim4d {
 
-struct alignas(64) Quadric {
+struct Quadric {
   // value(d) = d . A d + 2 b . d + c for the offset d from the origin. A by rows of its upper triangle.
   double xx = 0, xy = 0, xz = 0, xt = 0, yy = 0, yz = 0, yt = 0, zz = 0, zt = 0, tt = 0;
   glm::dvec4 b{0};

@@ -27,10 +27,6 @@ inline constexpr double kLeastSlope = 0.05;
 // Walls of the domain a vertex stands on: bit 2c for the low side of coordinate c (x y z t), 2c + 1 for the high one.
 using Walls = std::uint8_t;
 
-// Flags of a vertex.
-inline constexpr std::uint8_t kOnBoundary = 1;  // it lies in a triangle of one tetrahedron
-inline constexpr std::uint8_t kLocked = 2;      // it keeps its place, and no edge at it is collapsed
-
 enum class Metric {
   kSlice,  // squared spatial distance at fixed time, weighted by swept area
   kPaper,  // sum of N N^T with the raw 4D cross product N
@@ -39,7 +35,7 @@ enum class Metric {
 // What is known of a vertex beside its walls, or-ed together.
 enum VertexFlags : std::uint8_t {
   kOnBoundary = 1,  // it lies in a triangle of one tetrahedron
-  kLocked = 2,      // tetrahedra outside this mesh use it: it stays as it is
+  kLocked = 2,      // it keeps its place, and no edge at it is collapsed
   kUncounted = 4,   // it was locked whenever free boundaries were looked for so far
 };
 

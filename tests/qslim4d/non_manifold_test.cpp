@@ -54,7 +54,7 @@ marching::ExtractedMesh joined() {
 }
 
 SlimMesh slimOf(const marching::ExtractedMesh& mesh, bool keep) {
-  return makeSlimMesh(mesh.vertices, mesh.tets, mesh.header.domain, {}, Metric::kSlice, keep);
+  return makeSlimMesh(mesh.vertices, mesh.tets, mesh.header.domain, {}, Metric::kSlice, {keep, nullptr, nullptr});
 }
 
 using Face = std::array<std::uint32_t, 3>;
