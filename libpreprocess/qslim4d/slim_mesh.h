@@ -12,6 +12,7 @@
 
 #include "formats/hypermesh.h"
 #include "libpreprocess/outofcore/executor.h"
+#include "libpreprocess/outofcore/huge_pages.h"
 #include "libpreprocess/qslim4d/columns.h"
 #include "libpreprocess/qslim4d/quadric.h"
 #include "libpreprocess/qslim4d/space.h"
@@ -46,12 +47,12 @@ struct Star {
 };
 
 struct SlimMesh {
-  std::vector<Vec4f> positions;        // index space
-  std::vector<hypermesh::Tet> tets;    // a dead one has kNone as its first vertex
-  std::vector<std::uint32_t> corners;  // 4 * tet + i: vertex i of tet
-  std::uint64_t corners_used = 0;      // of `corners`
-  std::vector<Star> stars;             // by vertex
-  std::vector<Quadric> quadrics;       // by vertex, about the vertex
+  std::vector<Vec4f> positions;                                      // index space
+  std::vector<hypermesh::Tet> tets;                                  // a dead one has kNone as its first vertex
+  std::vector<std::uint32_t> corners;                                // 4 * tet + i: vertex i of tet
+  std::uint64_t corners_used = 0;                                    // of `corners`
+  std::vector<Star> stars;                                           // by vertex
+  std::vector<Quadric, outofcore::LineAllocator<Quadric>> quadrics;  // by vertex, about the vertex
   std::vector<Walls> walls;
   std::vector<std::uint8_t> is_boundary;  // by vertex: VertexFlags
   Columns columns;                        // values at the vertices; takes nothing where there are none
