@@ -177,6 +177,7 @@ class CpuRenderer final : public Renderer {
     Image image(list.format.width * grid.value(), list.format.height * grid.value());
     const Image& behind = background_.of(list, image.width, image.height, threads_);
     raster_.begin(image.width, image.height);
+    raster_.expect(list.drawn());
     for (std::size_t i = 0; i < list.surfaces.size(); ++i) {
       raster_.beginSurface(static_cast<std::uint32_t>(i), list.surfaces[i].mirrored);
       if (Status status = addSurface(list, list.surfaces[i], *sources[list.surfaces[i].source]); !status.ok())

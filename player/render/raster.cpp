@@ -68,6 +68,11 @@ void Raster::begin(std::uint32_t width, std::uint32_t height) {
   ids_.assign(std::size_t{width} * height, kNothing);
 }
 
+void Raster::expect(std::size_t triangles) {
+  vertices_.reserve(3 * triangles);
+  triangles_.reserve(triangles);
+}
+
 void Raster::beginSurface(std::uint32_t number, bool mirrored) {
   surface_ = number;
   mirrored_ = mirrored;

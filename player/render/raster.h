@@ -30,6 +30,9 @@ class Raster {
   // Empties it for a new picture; memory is kept.
   void begin(std::uint32_t width, std::uint32_t height);
 
+  // Makes room for so many triangles, so that a first picture does not move what it has gathered again and again.
+  void expect(std::size_t triangles);
+
   // What add() brings from now on belongs to surface `number`; mirrored: its clockwise triangles are the front ones.
   void beginSurface(std::uint32_t number, bool mirrored);
 

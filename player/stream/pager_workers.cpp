@@ -1,4 +1,7 @@
 // The threads behind a pager: they read, check, decode and prove.
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -12,12 +15,18 @@ Fault noMemory(const std::string& path, std::size_t page, std::uint64_t bytes) {
           "no memory for " + std::to_string(bytes) + " bytes", "give the program more memory"};
 }
 
+// Whoever draws goes first: pages that a film will need are fetched in what time that leaves, and a page that is waited
+// for has the machine to itself. A wish; a system that does not grant it plays with stalls.
+void stepBack() { static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 10)); }
+
 }  // namespace
 
 Pager::State::State(const dyntri::File& source, const PagerOptions& options)
     : file(source), budget(options.budget_bytes), slots(source.pages().size()) {
-  for (unsigned i = 0; i < std::max(options.io_threads, 1u); ++i) threads_.emplace_back([this] { readPages(); });
-  for (unsigned i = 0; i < std::max(options.decode_threads, 1u); ++i) threads_.emplace_back([this] { decodePages(); });
+  for (unsigned i = 0; i < std::max(options.io_threads, 1u); ++i)
+    threads_.emplace_back([this] { stepBack(), readPages(); });
+  for (unsigned i = 0; i < std::max(options.decode_threads, 1u); ++i)
+    threads_.emplace_back([this] { stepBack(), decodePages(); });
 }
 
 Pager::State::~State() {
