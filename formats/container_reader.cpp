@@ -207,7 +207,7 @@ Reader::Descriptor::~Descriptor() {
 
 std::optional<Reader::Identity> Reader::identify(int fd, const char* path) {
   struct stat info {};
-  if ((fd >= 0 ? fstat(fd, &info) : ::stat(path, &info)) != 0) return std::nullopt;
+  if ((path == nullptr ? fstat(fd, &info) : ::stat(path, &info)) != 0) return std::nullopt;
   return Identity{static_cast<std::uint64_t>(info.st_dev), static_cast<std::uint64_t>(info.st_ino),
                   static_cast<std::uint64_t>(info.st_size), info.st_mtim.tv_sec, info.st_mtim.tv_nsec};
 }

@@ -235,8 +235,7 @@ Status File::verify() const {
       auto column = loadColumn(c, k);
       if (!column.ok()) return column.fault();
       const std::uint64_t used = geometryEntry(k).counts[0] * columns_[c].components * sizeof(float);
-      const Status zero =
-          mesh_sections::checkColumnPadding(*reader_, column.value().bytes(), used, tablePage(k) + 1 + c);
+      Status zero = mesh_sections::checkColumnPadding(*reader_, column.value().bytes(), used, tablePage(k) + 1 + c);
       if (!zero.ok()) return zero;
     }
   }

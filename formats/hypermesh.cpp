@@ -291,7 +291,7 @@ Status File::verify() const {
     if (!page.ok()) return page.fault();
     const auto& entry = pages_.entries()[i - i % stride()];
     const std::uint64_t used = entry.counts[1] * columns_[i % stride() - 1].components * sizeof(float);
-    const Status zero = mesh_sections::checkColumnPadding(*reader_, page.value().bytes(), used, i);
+    Status zero = mesh_sections::checkColumnPadding(*reader_, page.value().bytes(), used, i);
     if (!zero.ok()) return zero;
   }
   if (const Bounds4f box = page_layout::stored(all); box.min != header_->bounds.min || box.max != header_->bounds.max) {

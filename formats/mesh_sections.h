@@ -40,10 +40,10 @@ Status checkCount(const container::Reader& reader, std::uint32_t kind, std::span
 }
 
 // Opens and proves the sections; Header has frames, columns and parts. Which kinds they are, `kinds` says in the order
-// of Sections. checkHeader(header) returns what is wrong with a header, or null. Spans are the reader's.
+// of Sections. check_header(header) returns what is wrong with a header, or null. Spans are the reader's.
 template <class Header, class CheckHeader>
 Result<Sections<Header>> open(const container::Reader& reader, const std::array<std::uint32_t, 4>& kinds,
-                              const CheckHeader& checkHeader) {
+                              const CheckHeader& check_header) {
   const auto [header_kind, times_kind, columns_kind, parts_kind] = kinds;
   Sections<Header> found;
   auto header = reader.single<Header>(header_kind);
@@ -58,7 +58,7 @@ Result<Sections<Header>> open(const container::Reader& reader, const std::array<
     if (Status status = reader.verifySection(*reader.find(kind)); !status.ok()) return status.fault();
   }
   found = {header.value(), times.value(), columns.value(), parts.value()};
-  if (const char* what = checkHeader(*found.header)) return reader.fault(header_kind, what);
+  if (const char* what = check_header(*found.header)) return reader.fault(header_kind, what);
   if (Status s = page_layout::checkTimes(found.times, found.header->frames, reader.path()); !s.ok()) return s.fault();
   if (Status s = checkCount(reader, columns_kind, found.columns, found.header->columns, "columns"); !s.ok())
     return s.fault();

@@ -106,7 +106,7 @@ SliceDistance compareSlices(const SliceSource& mesh, const SliceSource& referenc
   return result;
 }
 
-SliceJudge::SliceJudge(SliceSource reference, SliceTimes times, SliceFrame where, DistanceOptions options)
+SliceJudge::SliceJudge(const SliceSource& reference, SliceTimes times, SliceFrame where, DistanceOptions options)
     : times_(std::move(times)), where_(where), options_(options) {
   std::map<double, SliceMesh> slices;
   for (const auto* frames : {&times_.at, &times_.between}) {

@@ -70,7 +70,7 @@ struct SplitDistance {
 // compareSlices() at both kinds of times, each reference slice made once for all meshes compared.
 class SliceJudge {
  public:
-  SliceJudge(SliceSource reference, SliceTimes times, SliceFrame where, DistanceOptions options);
+  SliceJudge(const SliceSource& reference, SliceTimes times, SliceFrame where, DistanceOptions options);
   SplitDistance judge(const SliceSource& mesh, outofcore::Executor& executor, outofcore::Progress& progress);
 
  private:
