@@ -201,7 +201,7 @@ class Passes {
     const std::uint64_t need = mesh_.live_tets - std::min(mesh_.live_tets, options_.target_tets);
     const auto look =
         static_cast<std::uint64_t>(16 + std::min(kEdgesPerVertex * static_cast<double>(mesh_.live_vertices),
-                                                 kEdgesPerCollapse * static_cast<double>(need / kTetsPerCollapse)));
+                                                 kEdgesPerCollapse * static_cast<double>(need) / kTetsPerCollapse));
     CostHistogram histogram;
     for (const Edge& edge : edges_)
       if (edge.cost < kNever) histogram.add(edge.cost);
