@@ -174,11 +174,6 @@ Plot plotOf(const Bench& bench, const Input& input, Plot plot, const std::string
                                                                                   : "";
     found->points.push_back({row.at(x).get<double>(), row.at(y).get<double>(), label});
   }
-  for (Series& one : plot.series) {
-    if (choices)
-      std::sort(one.points.begin(), one.points.end(),
-                [](const PlotPoint& a, const PlotPoint& b) { return std::stoul(a.label) < std::stoul(b.label); });
-  }
   return plot;
 }
 
