@@ -15,9 +15,9 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-COLUMNS = [("series", "order"), ("ratio", "to"), ("tets", "tetrahedra"), ("seconds_work", "seconds"), ("seconds_cpu", "CPU, whole program"),
-           ("peak_bytes", "peak"), ("rms_at", "rms at frames"), ("rms_between", "rms between"), ("p99_between", "p99 between"),
-           ("max_at", "max at"), ("max_between", "max between"), ("volume_error_between", "volume"),
+COLUMNS = [("series", "order"), ("ratio", "to"), ("reached", "reached"), ("tets", "tetrahedra"), ("seconds_work", "seconds"),
+           ("seconds_cpu", "CPU, whole program"), ("peak_bytes", "peak"), ("rms_at", "rms at frames"), ("rms_between", "rms between"),
+           ("p99_between", "p99 between"), ("max_at", "max at"), ("max_between", "max between"), ("volume_error_between", "volume"),
            ("closed_slices", "closed slices")]
 STIFF = [("case", "case"), ("order", "order"), ("metric", "metric"), ("tets_in", "tetrahedra in"), ("tets", "out"),
          ("us_per_tet", "us a tetrahedron"), ("rms_at", "rms at frames"), ("rms_between", "rms between"), ("max_between", "max between"),
@@ -30,6 +30,8 @@ def cell(name, row):
         return row.get("absent", "–") if name == "seconds_work" else "–"
     if name == "ratio":
         return f"{100 * value:g} %"
+    if name == "reached":
+        return f"{100 * value:.3g} %{', stalls' if 'stall' in row else ''}"
     if name == "peak_bytes":
         return f"{value / 1e6:.0f} MB"
     if name.startswith("volume"):

@@ -133,12 +133,17 @@ def check_slim(result):
         by = {r["ratio"]: r for r in ours if r["order"] == order and r["metric"] == "slice"}
         assert by[0.5]["rms_between"] < by[0.1]["rms_between"] < by[0.02]["rms_between"], order
     peers = [r for r in rows if r["program"] != "hyper-qslim"]
-    assert len(peers) == 2 and all(r["exit"] == 0 for r in peers), peers
+    assert {r["ratio"] for r in peers} == {r["ratio"] for r in ours} and all(r["exit"] == 0 for r in peers), peers
+    for row in rows:  # what ends early says so
+        if "absent" not in row:
+            assert row["reached"] == row["tets"] / row["tets_in"], row
+            assert ("stall" in row) == (row["reached"] > 1.01 * row["ratio"]), row
+    assert any("stall" in r for r in ours), "random choices stall at 2 %"
     for row in peers:
         if "absent" in row:
             assert "python" in row["absent"] and "rms_at" not in row, row
         else:
-            assert 0 < row["tets"] < row["tets_in"] and 0 < row["rms_between"] < 4 and row["seconds_work"] > 0, row
+            assert 0 < row["tets"] < row["tets_in"] and 0 < row["rms_between"] < 16 and row["seconds_work"] > 0, row
 
 
 def check_stiff_slim(result):

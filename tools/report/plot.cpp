@@ -5,110 +5,141 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <iterator>
+#include <optional>
+#include <utility>
 
+#include "tools/report/axis.h"
 #include "tools/report/canvas.h"
 #include "tools/report/escape.h"
 
 namespace tet4d::report {
 namespace {
 
-constexpr double kLeft = 76, kRight = 180, kTop = 36, kBottom = 56;
+constexpr double kTop = 36, kBottom = 56, kTickSize = 11;
+constexpr double kToLegend = 12, kToName = 24;  // from the axes' box to a line of the legend, from there to its name
 constexpr const char* kInk = "#333333";
 constexpr const char* kGrid = "#dddddd";
 // Okabe and Ito's colours, which colour-blind readers can tell apart.
 constexpr std::array<const char*, 8> kColours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                               "#e69f00", "#56b4e9", "#666666", "#000000"};
 
-struct Axis {
-  double low = 0, high = 1;  // in logarithms if log
-  bool log = false;
-
-  bool shows(double value) const { return std::isfinite(value) && (!log || value > 0); }
-  double place(double value) const {
-    const double v = log ? std::log10(value) : value;
-    return (v - low) / (high - low);
+struct Box {
+  double left = 0, top = 0, right = 0, bottom = 0;
+  bool holds(const Box& other) const {
+    return other.left >= left && other.right <= right && other.top >= top && other.bottom <= bottom;
+  }
+  bool meets(const Box& other) const {
+    return other.left < right && other.right > left && other.top < bottom && other.bottom > top;
   }
 };
 
-Axis axisOf(const std::vector<double>& values, bool log) {
-  Axis axis{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), log};
-  for (const double value : values) {
-    const double v = log ? std::log10(value) : value;
-    axis.low = std::min(axis.low, v);
-    axis.high = std::max(axis.high, v);
-  }
-  if (values.empty()) axis.low = 0, axis.high = 1;
-  if (!log) axis.low = std::min(axis.low, 0.0);
-  const double margin = axis.high > axis.low ? 0.06 * (axis.high - axis.low) : 0.5;
-  axis.low -= log ? margin : 0;
-  axis.high += margin;
-  return axis;
+// Not less than a text takes in the fonts that viewers have; bytes that continue a character take nothing.
+double widthOf(const std::string& text, double size) {
+  const auto characters =
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+  return 0.65 * size * static_cast<double>(characters);
 }
 
-std::vector<double> ticksOf(const Axis& axis) {
-  std::vector<double> ticks;
-  if (axis.log) {
-    const double decades = axis.high - axis.low;
-    const int step = std::max(1, static_cast<int>(std::ceil(decades / 8)));
-    for (int e = static_cast<int>(std::floor(axis.low)); e <= axis.high; ++e) {
-      for (const double m : {1.0, 2.0, 5.0}) {
-        const double value = m * std::pow(10.0, e), at = std::log10(value);
-        if (at < axis.low || at > axis.high || (m > 1 && decades > 2.5) || (e % step != 0)) continue;
-        ticks.push_back(value);
-      }
-    }
-    return ticks;
+// The beginning of a text that is wider than `width`.
+std::string shortened(std::string text, double size, double width) {
+  if (widthOf(text, size) <= width) return text;
+  while (!text.empty() && widthOf(text + "\u2026", size) > width) {
+    while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
+    if (!text.empty()) text.pop_back();
   }
-  const double raw = (axis.high - axis.low) / 5, unit = std::pow(10.0, std::floor(std::log10(raw)));
-  const double step = raw / unit < 1.5 ? unit : raw / unit < 3.5 ? 2 * unit : raw / unit < 7.5 ? 5 * unit : 10 * unit;
-  for (double k = std::ceil(axis.low / step); k * step <= axis.high; ++k) ticks.push_back(k * step);
-  return ticks;
+  return text + "\u2026";
 }
 
-std::string tickText(double value) { return fmt::format("{:.3g}", value); }
-
+// The axes and the box between them; names of series stand right of it.
 struct Frame {
   Axis x, y;
-  double px(double value) const { return kLeft + x.place(value) * (kPlotWidth - kLeft - kRight); }
-  double py(double value) const { return kPlotHeight - kBottom - y.place(value) * (kPlotHeight - kTop - kBottom); }
+  Box box;
+  double px(double value) const { return box.left + x.place(value) * (box.right - box.left); }
+  double py(double value) const { return box.bottom - y.place(value) * (box.bottom - box.top); }
 };
 
 void drawAxes(const Plot& plot, const Frame& frame, Canvas& canvas) {
-  const double right = kPlotWidth - kRight, bottom = kPlotHeight - kBottom;
-  for (const double tick : ticksOf(frame.x)) {
-    const double x = frame.px(tick);
-    canvas.line({{x, kTop}, {x, bottom}}, kGrid, 1);
-    canvas.text(x, bottom + 16, tickText(tick), Anchor::kMiddle, 11, false);
+  const Box& box = frame.box;
+  for (const Tick& tick : ticksOf(frame.x)) {
+    const double x = frame.px(tick.value);
+    canvas.line({{x, box.top}, {x, box.bottom}}, kGrid, 1);
+    canvas.text(x, box.bottom + 16, tick.text, Anchor::kMiddle, kTickSize, false);
   }
-  for (const double tick : ticksOf(frame.y)) {
-    const double y = frame.py(tick);
-    canvas.line({{kLeft, y}, {right, y}}, kGrid, 1);
-    canvas.text(kLeft - 6, y + 4, tickText(tick), Anchor::kEnd, 11, false);
+  for (const Tick& tick : ticksOf(frame.y)) {
+    const double y = frame.py(tick.value);
+    canvas.line({{box.left, y}, {box.right, y}}, kGrid, 1);
+    canvas.text(box.left - 6, y + 4, tick.text, Anchor::kEnd, kTickSize, false);
   }
-  canvas.line({{kLeft, kTop}, {kLeft, bottom}, {right, bottom}}, kInk, 1.2);
-  canvas.text(kLeft, 20, plot.title, Anchor::kStart, 14, false);
-  canvas.text((kLeft + right) / 2, bottom + 36, plot.x_label, Anchor::kMiddle, 12, false);
-  canvas.text(18, (kTop + bottom) / 2, plot.y_label, Anchor::kMiddle, 12, true);
+  canvas.line({{box.left, box.top}, {box.left, box.bottom}, {box.right, box.bottom}}, kInk, 1.2);
+  canvas.text(box.left, 20, plot.title, Anchor::kStart, 14, false);
+  canvas.text((box.left + box.right) / 2, box.bottom + 36, plot.x_label, Anchor::kMiddle, 12, false);
+  canvas.text(18, (box.top + box.bottom) / 2, plot.y_label, Anchor::kMiddle, 12, true);
 }
 
-void drawSeries(const Series& series, std::size_t rank, const Frame& frame, Canvas& canvas) {
+// Labels of points, inside the axes' box: beside their point where no other label stands, on the side that has room.
+class Labels {
+ public:
+  Labels(const Box& box, Canvas& canvas) : box_(box), canvas_(&canvas) {}
+
+  void add(double x, double y, const std::string& label) {
+    const std::string text = shortened(label, kSize, box_.right - box_.left);
+    const double width = widthOf(text, kSize);
+    std::optional<Box> chosen;
+    for (const Box& place :
+         {Box{x + 6, y - 5 - kSize, x + 6 + width, y - 5}, Box{x - 6 - width, y - 5 - kSize, x - 6, y - 5},
+          Box{x + 6, y + 5, x + 6 + width, y + 5 + kSize}, Box{x - 6 - width, y + 5, x - 6, y + 5 + kSize}}) {
+      if (!box_.holds(place)) continue;
+      const bool free =
+          std::none_of(placed_.begin(), placed_.end(), [&](const Box& other) { return other.meets(place); });
+      if (!chosen || free) chosen = place;
+      if (free) break;
+    }
+    if (!chosen) {  // too wide for either side
+      const double left = std::clamp(x - width / 2, box_.left, box_.right - width);
+      const double top = std::clamp(y - 5 - kSize, box_.top, box_.bottom - kSize);
+      chosen = Box{left, top, left + width, top + kSize};
+    }
+    placed_.push_back(*chosen);
+    const bool before = chosen->right <= x;  // ends at its point, however wide the viewer's font is
+    canvas_->text(before ? chosen->right : chosen->left, chosen->bottom, text, before ? Anchor::kEnd : Anchor::kStart,
+                  kSize, false);
+  }
+
+ private:
+  static constexpr double kSize = 10;
+  Box box_;
+  Canvas* canvas_;
+  std::vector<Box> placed_;
+};
+
+void drawSeries(const Series& series, std::size_t rank, const Frame& frame, Labels& labels, Canvas& canvas) {
   const std::string colour = kColours[rank % kColours.size()];
+  std::vector<PlotPoint> points;
+  std::copy_if(series.points.begin(), series.points.end(), std::back_inserter(points),
+               [&](const PlotPoint& point) { return frame.x.shows(point.x) && frame.y.shows(point.y); });
+  std::stable_sort(points.begin(), points.end(), [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
   std::vector<std::pair<double, double>> line;
-  for (const PlotPoint& point : series.points) {
-    if (frame.x.shows(point.x) && frame.y.shows(point.y)) line.emplace_back(frame.px(point.x), frame.py(point.y));
-  }
+  for (const PlotPoint& point : points) line.emplace_back(frame.px(point.x), frame.py(point.y));
   if (line.size() > 1) canvas.line(line, colour, 1.6);
-  for (const PlotPoint& point : series.points) {
-    if (!frame.x.shows(point.x) || !frame.y.shows(point.y)) continue;
+  for (const PlotPoint& point : points) {
     canvas.dot(frame.px(point.x), frame.py(point.y), 3.4, colour);
-    if (!point.label.empty())
-      canvas.text(frame.px(point.x) + 6, frame.py(point.y) - 5, point.label, Anchor::kStart, 10, false);
+    if (!point.label.empty()) labels.add(frame.px(point.x), frame.py(point.y), point.label);
   }
-  const double y = kTop + 8 + 18 * static_cast<double>(rank), x = kPlotWidth - kRight + 12;
+  const double y = kTop + 8 + 18 * static_cast<double>(rank), x = frame.box.right + kToLegend;
   canvas.line({{x, y}, {x + 18, y}}, colour, 1.6);
   canvas.dot(x + 9, y, 3.4, colour);
-  canvas.text(x + 24, y + 4, series.name, Anchor::kStart, 11, false);
+  canvas.text(x + kToName, y + 4, shortened(series.name, kTickSize, kPlotWidth - x - kToName), Anchor::kStart,
+              kTickSize, false);
+}
+
+// Room for the texts of the ticks on the left, for the names of the series on the right.
+Frame frameOf(const Plot& plot, const Axis& x, const Axis& y) {
+  double left = 76, right = 180;
+  for (const Tick& tick : ticksOf(y)) left = std::max(left, 30 + widthOf(tick.text, kTickSize));
+  for (const Series& series : plot.series)
+    right = std::max(right, kToLegend + kToName + widthOf(series.name, kTickSize));
+  return {x, y, {left, kTop, kPlotWidth - std::min(right, kPlotWidth / 2), kPlotHeight - kBottom}};
 }
 
 class SvgCanvas final : public Canvas {
@@ -155,9 +186,10 @@ void draw(const Plot& plot, Canvas& canvas) {
       }
     }
   }
-  const Frame frame{axisOf(xs, plot.log_x), axisOf(ys, plot.log_y)};
+  const Frame frame = frameOf(plot, axisOf(xs, plot.log_x), axisOf(ys, plot.log_y));
   drawAxes(plot, frame, canvas);
-  for (std::size_t i = 0; i < plot.series.size(); ++i) drawSeries(plot.series[i], i, frame, canvas);
+  Labels labels(frame.box, canvas);
+  for (std::size_t i = 0; i < plot.series.size(); ++i) drawSeries(plot.series[i], i, frame, labels, canvas);
   if (hidden > 0) {
     canvas.text(kPlotWidth - 8, kPlotHeight - 6, fmt::format("{} of 0, or without a number, not shown", hidden),
                 Anchor::kEnd, 10, false);

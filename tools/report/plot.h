@@ -14,7 +14,7 @@ struct PlotPoint {
 
 struct Series {
   std::string name;
-  std::vector<PlotPoint> points;  // joined in this order
+  std::vector<PlotPoint> points;  // joined in the order of x: no curve goes backwards
 };
 
 struct Plot {

@@ -21,6 +21,7 @@ const std::vector<std::string> kColumns{"program",
                                         "choices",
                                         "threads",
                                         "ratio",
+                                        "reached",
                                         "tets",
                                         "collapses",
                                         "seconds_work",
@@ -39,9 +40,11 @@ const std::vector<std::string> kColumns{"program",
                                         "volume_error_between",
                                         "closed_slices",
                                         "load",
+                                        "stall",
                                         "absent"};
 
 constexpr std::uint64_t kUsualChoices = 8;  // of the series that stands beside the other orders
+constexpr double kReached = 1.01;           // of the tetrahedra asked for; what ends above that has stalled
 
 // A hypermesh to simplify, and what its errors are told in.
 struct Input {
@@ -102,6 +105,15 @@ Input inputOf(Bench& bench, const SlimOptions& options, const std::string& given
   return input;
 }
 
+// How far a run came, and in words where that is not as far as asked.
+void addReached(double ratio, Row& row) {
+  if (!row.contains("tets")) return;  // failed, or absent
+  const auto tets = row.at("tets").get<double>(), whole = row.at("tets_in").get<double>();
+  row["reached"] = number(tets / whole);
+  if (tets > kReached * ratio * whole)
+    row["stall"] = fmt::format("ends at {:.3g} % of the tetrahedra, asked for {:g} %", 100 * tets / whole, 100 * ratio);
+}
+
 void runKind(Bench& bench, const Input& input, const Kind& kind, double ratio, measure::SliceJudge& judge) {
   std::vector<std::string> words{input.path, "--ratio",  fmt::format("{}", ratio), "--order", kind.order,
                                  "--metric", kind.metric};
@@ -117,6 +129,7 @@ void runKind(Bench& bench, const Input& input, const Kind& kind, double ratio, m
   row["tets_in"] = input.tets;
   row["unit"] = input.unit_name;
   runSlim(bench, words, judge, input.unit, row);
+  addReached(ratio, row);
   bench.rows.add(std::move(row));
 }
 
@@ -137,6 +150,7 @@ void runPeers(Bench& bench, const Input& input, const std::vector<double>& ratio
       addRun(row, made);
     } else {
       runSlimPeer(bench, words, last_t, judge, input.unit, row);
+      addReached(ratio, row);
     }
     bench.rows.add(std::move(row));
   }
@@ -174,11 +188,6 @@ Plot plotOf(const Bench& bench, const Input& input, Plot plot, const std::string
                                                                                   : "";
     found->points.push_back({row.at(x).get<double>(), row.at(y).get<double>(), label});
   }
-  for (Series& one : plot.series) {
-    if (choices)
-      std::sort(one.points.begin(), one.points.end(),
-                [](const PlotPoint& a, const PlotPoint& b) { return std::stoul(a.label) < std::stoul(b.label); });
-  }
   return plot;
 }
 
@@ -192,7 +201,8 @@ Section sectionOf(const Bench& bench, const Input& input) {
       "max "
       "the largest; volumes, where both slices are closed and wound one way, relative. seconds work: reading, "
       "simplifying, writing. VTK: its "
-      "quadric filter on (x, y, z; t), seconds of the filter alone, one thread.",
+      "quadric filter on (x, y, z; t), seconds of the filter alone, one thread. A run that ends with more tetrahedra "
+      "than asked for says so under stall.",
       input.tets);
   section.plots = {
       plotOf(bench, input,
@@ -220,9 +230,13 @@ Section sectionOf(const Bench& bench, const Input& input) {
   return section;
 }
 
+std::vector<double> ratiosOf(bool full) {
+  if (full) return {0.5, 0.25, 0.1, 0.05, 0.02, 0.01, 0.005};
+  return {0.5, 0.1, 0.02};
+}
+
 std::vector<std::pair<Kind, std::vector<double>>> planOf(bool full) {
-  const std::vector<double> ratios =
-      full ? std::vector<double>{0.5, 0.25, 0.1, 0.05, 0.02, 0.01, 0.005} : std::vector<double>{0.5, 0.1, 0.02};
+  const std::vector<double> ratios = ratiosOf(full);
   const std::vector<double> few = full ? std::vector<double>{0.1, 0.02} : std::vector<double>{0.1};
   std::vector<std::pair<Kind, std::vector<double>>> plan;
   for (const char* metric : {"slice", "paper"}) {
@@ -261,10 +275,7 @@ Section sweepInput(Bench& bench, const SlimOptions& options, const std::string& 
   for (const auto& [kind, ratios] : planOf(bench.full)) {
     for (const double ratio : ratios) runKind(bench, input, kind, ratio, judge);
   }
-  if (bench.peer) {
-    runPeers(bench, input, bench.full ? std::vector<double>{0.5, 0.25, 0.1, 0.05, 0.02} : std::vector<double>{0.5, 0.1},
-             high.t, judge);
-  }
+  if (bench.peer) runPeers(bench, input, ratiosOf(bench.full), high.t, judge);
   return sectionOf(bench, input);
 }
 
