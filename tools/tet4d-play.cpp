@@ -37,7 +37,7 @@ struct Options {
   play::ColoringOptions coloring;
   std::array<std::uint32_t, 2> size{1280, 720};
   std::string at, times, camera, write_camera, contact_sheet;
-  std::string renderer = host::hasOffscreenGl() ? "gl" : "cpu";
+  std::string renderer = "auto";
   std::string format = "auto";
   std::string arrival = "wait", on_damage = "stop";
   std::uint64_t samples = 4, columns = 4, tiles = 0, gpu_memory = 0, io_threads = 1;
@@ -405,8 +405,11 @@ int main(int argc, char** argv) {
               "pictures from A to B, both included; A >= B with STEP < 0 runs backward; T,A:B:STEP,… jumps; default: "
               "every frame of the file",
               &o.times)
-      .option("--renderer", "WHICH", "OpenGL; plain C++; or tetrahedra of one .t4h, flat, as the paper's baseline",
-              cli::Choice{&o.renderer, {"gl", "cpu", "tets"}})
+      .option(
+          "--renderer", "WHICH",
+          "OpenGL; plain C++; tetrahedra of one .t4h, flat, as the paper's baseline; auto: gl in a window, cpu with "
+          "--offscreen, where OpenGL has no GPU and is slower",
+          cli::Choice{&o.renderer, {"auto", "gl", "cpu", "tets"}})
       .option("--samples", "N", "samples a pixel: 1, 4, 9 or 16", &o.samples)
       .flag("--flat", "one normal a triangle instead of smooth ones", &o.flat)
       .flag("--panels", "with the window's panels over the picture", &o.panels)
@@ -459,5 +462,8 @@ int main(int argc, char** argv) {
               cli::kKeepsResult)
       .heading("General")
       .common({cli::kOutput, cli::kThreads, cli::kMemory, cli::kForce, cli::kStats, cli::kDepfile});
-  return cli::run(argc, argv, command, [&](cli::Session& session) { return playFiles(session, o); });
+  return cli::run(argc, argv, command, [&](cli::Session& session) {
+    if (o.renderer == "auto") o.renderer = o.offscreen ? "cpu" : "gl";
+    return playFiles(session, o);
+  });
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "player/host/foresight.h"
+#include "player/scene/drawn_kinds.h"
 
 namespace tet4d::host {
 namespace {
@@ -79,6 +80,8 @@ class Economy {
     format.height = std::max(format.height / quality.divide, 1u);
     return format;
   }
+  // The list of a picture that is begun: what is first of its kind is not learnt from.
+  bool isFirst(const scene::DrawList& list) { return kinds_.isFirst(list); }
   void learn(const FrameCost& cost) {
     const auto bytes = static_cast<double>(cost.bytes_touched);
     budget_.add({static_cast<double>(cost.processed), bytes, cost.samples * pixels_}, cost.ms);
@@ -91,6 +94,7 @@ class Economy {
 
  private:
   const Film* film_;
+  scene::DrawnKinds kinds_;
   scene::FrameBudget budget_;
   scene::MotionQuality quality_;
   double pixels_;
@@ -100,6 +104,7 @@ class Economy {
 struct Started {
   FrameCost cost{};
   scene::Format format;
+  bool is_first = false;  // of its kind
 };
 
 // One picture: scene says which pages, stream brings them, scene says which triangles, render draws.
@@ -118,6 +123,7 @@ Status startFrame(const Film& film, std::size_t i, Foresight& foresight, Economy
   cost.choose_ms = msSince(start) - cost.load_ms;
   const std::vector<const stream::Residency*> resident(pagers.begin(), pagers.end());
   list.format = started.format = economy.formatOf(i, static_cast<double>(list.processed()));
+  started.is_first = economy.isFirst(list);
   if (Status status = renderer.start(list, resident); !status.ok()) return status;
   cost.samples = economy.samplesOf(list.format);
   cost.ms = msSince(start);
@@ -141,7 +147,7 @@ Result<render::Image> takeFrame(const Film& film, Economy& economy, render::Rend
   FrameCost& cost = started.cost;
   cost.ms += msSince(start);
   cost.draw_ms = cost.ms - cost.choose_ms - cost.load_ms;
-  economy.learn(cost);
+  if (!started.is_first) economy.learn(cost);
   return image;
 }
 
@@ -182,6 +188,12 @@ Status play(const Film& film, std::span<stream::Pager* const> pagers, render::Re
     started.pop_front();
     return {};
   };
+  const auto takeAll = [&]() -> Status {
+    while (!started.empty()) {
+      if (Status status = takeOne(); !status.ok()) return status;
+    }
+    return {};
+  };
   Clock::time_point due = Clock::now();
   for (std::size_t i = 0; i < film.times.size(); ++i) {
     if (film.arrival == Arrival::kDraw) {
@@ -190,14 +202,16 @@ Status play(const Film& film, std::span<stream::Pager* const> pagers, render::Re
             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / film.fps));
     }
     started.emplace_back();
-    if (Status status = startFrame(film, i, foresight, economy, pagers, renderer, started.back()); !status.ok())
-      return status;
+    if (Status fault = startFrame(film, i, foresight, economy, pagers, renderer, started.back()); !fault.ok()) {
+      // What was begun before it is whole: a film has the same pictures up to the fault with every renderer.
+      started.pop_back();
+      if (Status status = takeAll(); !status.ok()) return status;
+      return fault;
+    }
     if (started.size() <= ahead) continue;
     if (Status status = takeOne(); !status.ok()) return status;
   }
-  while (!started.empty()) {
-    if (Status status = takeOne(); !status.ok()) return status;
-  }
+  if (Status status = takeAll(); !status.ok()) return status;
   return sink != nullptr ? sink->finish() : Status{};
 }
 

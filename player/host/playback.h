@@ -68,11 +68,12 @@ struct FrameCost {
   double samples;               // a pixel; below 1 where a picture was drawn smaller and enlarged
 };
 
-// How a film kept to its budget: the last 64 pictures.
+// How a film kept to its budget: the last 64 pictures, without those that were the first of their kind (DrawnKinds).
 using BudgetReport = scene::FrameBudget::Report;
 
 // Draws all frames in order into `sink` and `sheet`, either of which may be null. `after` is called after each frame
-// and may throw to stop; nothing is left under a final name then but finished pictures. The first Fault ends it;
+// and may throw to stop; nothing is left under a final name then but finished pictures. The first Fault ends it,
+// after the pictures before it have gone to the sink;
 // kOutOfMemory if the triangles of a picture exceed film.triangle_bytes. With Arrival::kWait the pictures depend on
 // nothing but the film.
 // pagers: one a file. Faults of pages that were skipped stay in them (Pager::takeFaults()).

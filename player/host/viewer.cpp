@@ -317,6 +317,7 @@ Result<render::Image> Viewer::draw(double time, const scene::Format& format, boo
   const Clock::time_point start = Clock::now();
   std::vector<Fault> faults;
   const scene::DrawList list = files_.list({time, format, state_.smooth, pace(), whole}, state_.shot, stats, faults);
+  stats.is_first = kinds_.isFirst(list);
   auto image = renderer_->draw(list, files_.residencies());
   if (image.ok() && state_.legend) drawLegendOn(image.value(), whole);
   stats.ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -361,9 +362,11 @@ bool Viewer::drawScene(bool full) {
     report(image.fault());
     return true;
   }
-  budget_.add({static_cast<double>(stats.processed), static_cast<double>(stats.bytes_touched),
-               static_cast<double>(format.width) * format.height * format.samples},
-              stats.ms);
+  if (!stats.is_first) {
+    budget_.add({static_cast<double>(stats.processed), static_cast<double>(stats.bytes_touched),
+                 static_cast<double>(format.width) * format.height * format.samples},
+                stats.ms);
+  }
   state_.budget = budget_.report();
   show(std::move(image).value(), stats);
   return true;

@@ -19,6 +19,7 @@
 #include "player/host/viewer_files.h"
 #include "player/render/gl_panels.h"
 #include "player/scene/camera_control.h"
+#include "player/scene/drawn_kinds.h"
 #include "player/scene/frame_budget.h"
 
 struct ImGuiContext;
@@ -164,6 +165,7 @@ class Viewer {
   std::optional<Recorder> recorder_;
   bool has_view_ = false, moved_by_hand_ = false;
   bool scene_changed_ = true, picture_is_full_ = false;
+  scene::DrawnKinds kinds_;
   scene::FrameBudget budget_{50};
   scene::MotionQuality motion_{4};
   int settling_ = 3;       // frames the panels still need to come to rest

@@ -44,6 +44,7 @@ struct SceneStats {
   std::uint64_t pages_damaged = 0;
   std::uint64_t ranges_waiting = 0;  // columns whose range is being found out: drawn by material until then
   double ms = 0;
+  bool is_first = false;  // of its kind: see scene::DrawnKinds
 };
 
 // How time runs, for pages to be there in time.

@@ -26,6 +26,9 @@ class GlPicture {
   // refracts, a copy of the background is bound to kBehindUnit.
   Status begin(const scene::DrawList& list, GLsizei width, GLsizei height);
 
+  // The picture begun last will not be finished, or could not be begun: the one before it is the last again.
+  void giveUp() { current_ = 1 - current_; }
+
   // Draw calls go to the picture from here on, with depth test and without blending.
   void bind() const;
 

@@ -75,14 +75,10 @@ class GlRenderer final : public Renderer {
     const auto width = static_cast<GLsizei>(list.format.width * grid.value());
     const auto height = static_cast<GLsizei>(list.format.height * grid.value());
     pages_.beginFrame();
-    if (Status status = picture_.begin(list, width, height); !status.ok()) return status;
-    for (const scene::DrawSurface& surface : list.surfaces) {
-      for (const auto items : itemsByPage(surface.items)) {
-        if (Status status = drawPage(list, surface, items, *sources[surface.source]); !status.ok()) return status;
-      }
+    if (Status status = drawAll(list, sources, width, height); !status.ok()) {
+      picture_.giveUp();
+      return status;
     }
-    glFlush();
-    if (Status status = checkGl("drawing"); !status.ok()) return status;
     pages_.evict();
     sides_.push_back(grid.value());
     return {};
@@ -98,6 +94,18 @@ class GlRenderer final : public Renderer {
   }
 
  private:
+  Status drawAll(const scene::DrawList& list, std::span<const stream::Residency* const> sources, GLsizei width,
+                 GLsizei height) {
+    if (Status status = picture_.begin(list, width, height); !status.ok()) return status;
+    for (const scene::DrawSurface& surface : list.surfaces) {
+      for (const auto items : itemsByPage(surface.items)) {
+        if (Status status = drawPage(list, surface, items, *sources[surface.source]); !status.ok()) return status;
+      }
+    }
+    glFlush();
+    return checkGl("drawing");
+  }
+
   Status drawPage(const scene::DrawList& list, const scene::DrawSurface& surface,
                   std::span<const scene::DrawItem> items, const stream::Residency& source) {
     const std::size_t number = items.front().page;

@@ -31,6 +31,7 @@ class Renderer {
   // Draws as draw() does, in two steps, so that a film starts the next picture before it waits for this one. take()
   // hands over the oldest picture that was started and not taken; no more than picturesAhead() may wait when the next
   // one is started. The pages may go after start(). Nothing waits when draw() is called.
+  // A picture whose start() is a fault is none; those before it can still be taken.
   virtual std::size_t picturesAhead() const { return 0; }
   virtual Status start(const scene::DrawList& list, std::span<const stream::Residency* const> sources);
   virtual Result<Image> take();

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kWindow = 64;
 constexpr double kForgetting = 0.97;  // a frame
+constexpr std::size_t kSamples = 3;   // among the terms
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // The smallest value with at least `share` of the values not above it; 0 of none.
@@ -67,7 +68,15 @@ void FrameBudget::add(const FrameWork& work, double ms) {
   ++count_;
   if (frames_.size() > kWindow) frames_.pop_front();
   constexpr std::size_t kRun = 4;
-  if (hasChanged()) frames_.erase(frames_.begin(), frames_.end() - kRun);
+  if (hasChanged()) {
+    frames_.erase(frames_.begin(), frames_.end() - kRun);
+    tells_samples_apart_ = false;
+  }
+  constexpr double kApart = 1.5;
+  const auto [least, most] = std::minmax_element(frames_.begin(), frames_.end(), [](const Frame& a, const Frame& b) {
+    return a.terms[kSamples] < b.terms[kSamples];
+  });
+  tells_samples_apart_ = tells_samples_apart_ || most->terms[kSamples] > kApart * least->terms[kSamples];
   fit();
 }
 
@@ -114,22 +123,49 @@ double FrameBudget::predictMs(const FrameWork& work) const {
   return dot(std::array<double, kTerms>{1, work.primitives, work.bytes, work.samples}, cost_);
 }
 
-// How much longer than the model says 95 of 100 frames may take.
-double FrameBudget::margin() const {
+namespace {
+
+// 95 of 100 ratios are not above it. Of a few frames the longest may be an accident.
+double usualMost(const std::vector<double>& ratios) {
+  const std::size_t few = ratios.size();
+  const double share = few > 1 ? std::min(0.95, static_cast<double>(few - 1) / static_cast<double>(few)) : 1;
+  return quantile(ratios, share);
+}
+
+bool isAlike(double samples, double others) {
+  constexpr double kAlike = 0.1;
+  return std::abs(samples - others) <= kAlike * others;
+}
+
+}  // namespace
+
+// Measured over predicted, of the frames with as many samples as `like`, or of all.
+std::vector<double> FrameBudget::ratios(const FrameWork* like) const {
   std::vector<double> ratios;
   for (const Frame& frame : frames_) {
     const double now = dot(frame.terms, cost_);
-    if (now > 0) ratios.push_back(frame.ms / now);
+    if (now > 0 && (like == nullptr || isAlike(frame.terms[kSamples], like->samples))) ratios.push_back(frame.ms / now);
   }
-  // Of a few frames the longest may be an accident.
-  const std::size_t few = ratios.size();
-  const double share = few > 1 ? std::min(0.95, static_cast<double>(few - 1) / static_cast<double>(few)) : 1;
-  return std::max(quantile(ratios, share), 1.0);
+  return ratios;
+}
+
+// How much longer than the model says 95 of 100 frames may take.
+double FrameBudget::margin() const { return std::max(usualMost(ratios(nullptr)), 1.0); }
+
+std::size_t FrameBudget::seen(const FrameWork& work) const {
+  return static_cast<std::size_t>(std::count_if(
+      frames_.begin(), frames_.end(), [&](const Frame& f) { return isAlike(f.terms[kSamples], work.samples); }));
+}
+
+double FrameBudget::expectMs(const FrameWork& work) const {
+  const std::vector<double> own = ratios(&work);
+  return predictMs(work) * (own.empty() ? 1 : quantile(own, 0.5));
 }
 
 bool FrameBudget::fits(const FrameWork& work, double part) const {
   if (target_ms_ == kInfinite) return true;
-  return predictMs(work) * margin() <= part * target_ms_ && target_ms_ > 0;
+  const std::vector<double> own = ratios(&work);
+  return predictMs(work) * (own.empty() ? margin() : usualMost(own)) <= part * target_ms_ && target_ms_ > 0;
 }
 
 double FrameBudget::primitives(const FrameWork& work) {
@@ -160,8 +196,9 @@ namespace {
 // From coarse to fine.
 constexpr std::array<Quality, 6> kLevels{{{1, 4}, {1, 2}, {1, 1}, {4, 1}, {9, 1}, {16, 1}}};
 
-FrameWork workOf(const Quality& quality, double pixels, double primitives, double bytes) {
-  return {primitives, bytes, pixels * quality.samples / (quality.divide * quality.divide)};
+// `whole` has one sample a pixel.
+FrameWork workOf(const Quality& quality, const FrameWork& whole) {
+  return {whole.primitives, whole.bytes, whole.samples * quality.samples / (quality.divide * quality.divide)};
 }
 
 }  // namespace
@@ -171,23 +208,55 @@ MotionQuality::MotionQuality(std::uint32_t full_samples) : full_samples_(full_sa
   level_ = full_level_;
 }
 
+void MotionQuality::settle(const FrameBudget& budget, const FrameWork& whole) {
+  const std::size_t before = level_;
+  fall(budget, whole);
+  if (level_ == before) rise(budget, whole);
+  if (level_ != before) spare_ = waited_ = 0;
+}
+
+void MotionQuality::fall(const FrameBudget& budget, const FrameWork& whole) {
+  const std::size_t before = level_;
+  const FrameWork now = workOf(kLevels[before], whole);
+  const auto may_fit = [&](std::size_t level) {
+    const FrameWork work = workOf(kLevels[level], whole);
+    if (budget.fits(work)) return true;
+    if (level == before || budget.tellsSamplesApart()) return false;
+    return budget.expectMs(now) * work.samples / now.samples <= budget.targetMs() && budget.targetMs() > 0;
+  };
+  if (may_fit(level_)) return;
+  // Told nothing, the model gives one answer for all levels, and that is no reason to stay where pictures are too slow.
+  while (level_ > 0 && (level_ == before || !may_fit(level_))) --level_;
+  if (budget.targetMs() <= 0 || !budget.tellsSamplesApart() || may_fit(level_)) return;
+  constexpr double kLittle = 1.1;
+  const double least = budget.expectMs(workOf(kLevels[0], whole));
+  while (level_ < full_level_ && budget.expectMs(workOf(kLevels[level_ + 1], whole)) <= kLittle * least) ++level_;
+}
+
+void MotionQuality::rise(const FrameBudget& budget, const FrameWork& whole) {
+  constexpr double kPart = 0.9, kLittle = 1.1;
+  constexpr unsigned kPatience = 8, kSeldom = 1U << 12;
+  if (level_ == full_level_) return;
+  const auto work = [&](std::size_t level) { return workOf(kLevels[level], whole); };
+  ++waited_;
+  spare_ = budget.fits(work(level_ + 1), kPart) ? spare_ + 1 : 0;
+  if (waited_ == kPatience && tried_level_ == level_) try_after_ = kTryAfter;  // it was worth trying
+  if (spare_ >= kPatience) {
+    const double least = budget.expectMs(work(level_));
+    ++level_;
+    while (budget.tellsSamplesApart() && level_ < full_level_ && budget.fits(work(level_ + 1), kPart) &&
+           budget.expectMs(work(level_ + 1)) <= kLittle * least)
+      ++level_;
+  } else if (waited_ >= try_after_ && budget.fits(work(level_)) && budget.seen(work(level_ + 1)) < 2) {
+    tried_level_ = ++level_;
+    try_after_ = std::min(2 * try_after_, kSeldom);
+  }
+}
+
 Quality MotionQuality::next(const FrameBudget& budget, double pixels, double primitives, double bytes, bool is_moving) {
   const Quality full{full_samples_, 1};
   if (!is_moving || budget.targetMs() == kInfinite) return full;
-  const auto fits = [&](std::size_t level, double part) {
-    return budget.fits(workOf(kLevels[level], pixels, primitives, bytes), part);
-  };
-  while (level_ > 0 && !fits(level_, 1)) {
-    --level_;
-    spare_ = 0;
-  }
-  constexpr double kSpare = 2.0 / 3;
-  constexpr unsigned kPatience = 8;
-  spare_ = level_ < full_level_ && fits(level_ + 1, kSpare) ? spare_ + 1 : 0;
-  if (spare_ >= kPatience) {
-    ++level_;
-    spare_ = 0;
-  }
+  settle(budget, {primitives, bytes, pixels});
   return level_ == full_level_ ? full : kLevels[level_];
 }
 

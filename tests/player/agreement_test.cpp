@@ -54,6 +54,24 @@ TEST_F(Agreement, AtFrameTimesBetweenAndAtTheLastTime) {
   }
 }
 
+// What a film takes after a fault is the picture before it, not the one that was given up half drawn.
+TEST_F(Agreement, APictureThatFailsLeavesTheOneBeforeIt) {
+  Stage stage(test::writeTestSphere("agree_fault.t4d", 4));
+  for (const std::uint32_t side : {300u, 200u}) {  // the second: another size than the picture that waits
+    const render::Image alone = stage.draw(*gl_, 0.37f);
+    ASSERT_TRUE(gl_->start(stage.list(0.37f), stage.sources()).ok());
+    scene::DrawList broken = stage.list(2.5f);
+    broken.format.width = side;
+    broken.surfaces[0].items.push_back({1, 0, 1});  // not resident
+    EXPECT_FALSE(gl_->start(broken, stage.sources()).ok());
+    const auto taken = gl_->take();
+    ASSERT_TRUE(taken.ok());
+    EXPECT_EQ(taken.value().width, alone.width);
+    EXPECT_EQ(taken.value().rgba, alone.rgba) << side;
+    EXPECT_EQ(stage.draw(*gl_, 0.37f).rgba, alone.rgba) << "and the next is whole, " << side;
+  }
+}
+
 TEST_F(Agreement, OrthographicSampledMirroredAndFar) {
   Stage stage(test::writeTestSphere("agree_views.t4d", 2));
   stage.format.samples = 4;

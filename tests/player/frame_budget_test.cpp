@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "player/scene/drawn_kinds.h"
 #include "player/scene/pages_ahead.h"
 #include "tests/player/swept_mesh.h"
 
@@ -148,6 +149,125 @@ TEST(MotionQuality, FallsAtOnceRisesSlowlyAndIsFullAtRest) {
   EXPECT_GT(step(20, true).divide, 1u);
   for (int i = 0; i < 200; ++i) step(0.1, true);
   EXPECT_EQ(step(0.1, true), (Quality{16, 1}));
+}
+
+// Pictures of a renderer with a budget, as players hand them on. Milliseconds by samples a pixel.
+struct Motion {
+  FrameBudget budget{50};
+  MotionQuality quality{4};
+  double pixels = 1280.0 * 720;
+  template <class Machine>
+  double step(Machine machine, bool is_moving = true, bool is_learnt = true) {
+    const Quality q = quality.next(budget, pixels, 250000, 0, is_moving);
+    const double samples = static_cast<double>(q.samples) / (q.divide * q.divide);
+    last_ms = machine(samples);
+    if (is_learnt) budget.add({250000, 0, samples * pixels}, last_ms);
+    return samples;
+  }
+  double last_ms = 0;
+};
+
+// What OpenGL takes without a GPU: vertices whatever the samples, and four samples more than four times one.
+double softwareGl(double samples) { return 24 + 14 * samples + (samples > 1 ? 66 : 0); }
+
+TEST(MotionQuality, OneSampleThatFitsIsNotLeftForASixteenthOfIt) {
+  Motion motion;
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(motion.step(softwareGl, false), 4) << "at rest, 146 ms";
+  int tries = 0;
+  for (int i = 0; i < 600; ++i) {
+    const double samples = motion.step(softwareGl);
+    tries += i > 1 && samples > 1 ? 1 : 0;
+    if (i > 1) {
+      EXPECT_GE(samples, 1) << "38 of 50 ms, picture " << i;
+    }
+  }
+  EXPECT_LE(tries, 5) << "of four samples, ever more seldom";
+}
+
+// As it is where the budget was lowered by something else for a while: a step that would fit is found again.
+TEST(MotionQuality, SamplesComeBackThatAModelOfLinesThinksTooSlow) {
+  Motion motion;
+  for (int i = 0; i < 5; ++i) motion.step(softwareGl, false);
+  const auto busy = [](double samples) { return 6 * softwareGl(samples); };
+  for (int i = 0; i < 20; ++i) motion.step(busy);
+  EXPECT_LT(motion.step(busy), 0.3);
+  int late = 0;
+  double samples = 0;
+  for (int i = 0; i < 200; ++i) {
+    samples = motion.step(softwareGl);
+    late += motion.last_ms > 50 && i > 5 ? 1 : 0;
+    if (i > 80) {
+      EXPECT_GE(samples, 1) << i;
+    }
+  }
+  EXPECT_LE(late, 6) << "of 200";
+}
+
+TEST(MotionQuality, WhatSavesLittleIsNotGivenUp) {
+  Motion motion;
+  const auto vertices = [](double samples) { return 70 + samples; };  // above the target whatever is given up
+  int coarse = 0;
+  for (int i = 0; i < 300; ++i) coarse += motion.step(vertices) < 4 ? 1 : 0;
+  EXPECT_LE(coarse, 6);
+}
+
+// The first picture of a renderer links its programs. Players leave it out of what they learn from.
+TEST(MotionQuality, ASlowFirstPictureDoesNotLowerTheNextTwenty) {
+  const auto machine = [](double samples) { return 5 + 8 * samples; };
+  for (const bool is_moving : {false, true}) {
+    Motion motion;
+    scene::DrawnKinds kinds;
+    scene::DrawList list;
+    list.surfaces.resize(1);
+    list.surfaces[0].items.push_back({0, 0, 250000});
+    for (int i = 0; i < 21; ++i) {
+      const bool is_first = kinds.isFirst(list);
+      EXPECT_EQ(is_first, i == 0);
+      const auto slow = [&](double samples) { return machine(samples) + (is_first ? 450 : 0); };
+      EXPECT_EQ(motion.step(slow, i > 0 || is_moving, !is_first), 4) << i;
+    }
+  }
+}
+
+TEST(MotionQuality, NorDoesASlowOneLater) {
+  Motion motion;
+  for (int i = 0; i < 200; ++i) {
+    const auto machine = [&](double samples) { return 5 + 8 * samples + (i == 3 || i % 50 == 49 ? 450 : 0); };
+    EXPECT_EQ(motion.step(machine), 4) << i;
+  }
+}
+
+// A single slow picture that was learnt is not the machine: two are.
+TEST(MotionQuality, AFirstPictureThatWasLearntIsTriedAgain) {
+  Motion motion;
+  const auto machine = [](double samples) { return 5 + 8 * samples; };
+  motion.step([&](double samples) { return machine(samples) + 450; });
+  for (int i = 0; i < 60; ++i) motion.step(machine);
+  for (int i = 0; i < 60; ++i) EXPECT_EQ(motion.step(machine), 4) << i;
+}
+
+TEST(DrawnKinds, AreToldByWhatNeedsAProgramOfItsOwn) {
+  scene::DrawnKinds kinds;
+  scene::DrawList list;
+  EXPECT_TRUE(kinds.isFirst(list)) << "the background";
+  EXPECT_FALSE(kinds.isFirst(list));
+  list.surfaces.resize(2);
+  EXPECT_FALSE(kinds.isFirst(list)) << "surfaces of which nothing is drawn";
+  list.surfaces[1].items.push_back({0, 0, 1});
+  const auto first = [&] { return kinds.isFirst(list) && !kinds.isFirst(list); };
+  EXPECT_TRUE(first());
+  list.smooth = false;
+  EXPECT_TRUE(first());
+  list.surfaces[1].refraction = 1.3F;
+  EXPECT_TRUE(first());
+  list.surfaces[1].column.emplace();
+  EXPECT_TRUE(first());
+  list.surfaces[1].normal_column = 0;
+  EXPECT_TRUE(first());
+  list = {};
+  list.surfaces.resize(1);
+  list.surfaces[0].items.push_back({3, 0, 9});
+  EXPECT_FALSE(kinds.isFirst(list)) << "as before, whatever the file";
 }
 
 TEST(MotionQualityStiff, TargetsOfNothingAndOfEverything) {

@@ -36,10 +36,10 @@ SIZE = " --size 700x400 --at 1.5f "
 CASES = [
     {"name": "the window shows what --panels draws off-screen", "timeout": 240,
      "shell": XVFB + f"{PLAY} {SPHERE}{SIZE}--quit-after 6 --screenshot window.png;"
-                     f" tet4d-play {SPHERE}{SIZE}--offscreen --panels -o offscreen.png", "check": check_window},
+                     f" tet4d-play {SPHERE}{SIZE}--offscreen --renderer gl --panels -o offscreen.png", "check": check_window},
     {"name": "without panels it shows the picture of its camera file", "timeout": 240,
      "shell": XVFB + f"{PLAY} {SPHERE}{SIZE}--type '\t3w\x1b' --quit-after 8 --screenshot window.png;"
-                     f" tet4d-play {SPHERE}{SIZE}--offscreen --camera camera-0001.json -o offscreen.png", "check": check_bare},
+                     f" tet4d-play {SPHERE}{SIZE}--offscreen --renderer gl --camera camera-0001.json -o offscreen.png", "check": check_bare},
     {"name": "it plays", "timeout": 240,
      "shell": XVFB + f"{PLAY} {SPHERE} --size 500x300 --type '] ' --quit-after 25"},
     {"name": "in plain C++ too", "timeout": 240,
@@ -53,17 +53,17 @@ CASES = [
      "stderr": ["has no column"]},
     {"name": "it opens with the colours asked for, and their legend", "timeout": 240,
      "shell": XVFB + f"{PLAY} {COLUMNS}{SIZE}--color velocity:0 --map magma --quit-after 30 --screenshot window.png;"
-                     f" tet4d-play {COLUMNS}{SIZE}--color velocity:0 --map magma --offscreen --panels -o offscreen.png", "check": check_window},
+                     f" tet4d-play {COLUMNS}{SIZE}--color velocity:0 --map magma --offscreen --renderer gl --panels -o offscreen.png", "check": check_window},
     {"name": "on a dense display panels are as large as --ui-scale 2 makes them", "timeout": 240,
      "shell": DENSE + f"{PLAY} {SPHERE}{SIZE}--quit-after 8 --screenshot window.png\";"
-              f" tet4d-play {SPHERE} --size 1400x800 --at 1.5f --ui-scale 2 --offscreen --panels -o offscreen.png", "check": check_window},
+              f" tet4d-play {SPHERE} --size 1400x800 --at 1.5f --ui-scale 2 --offscreen --renderer gl --panels -o offscreen.png", "check": check_window},
     {"name": "unless a scale is given", "timeout": 240,
      "shell": DENSE + f"{PLAY} {SPHERE}{SIZE}--ui-scale 1 --quit-after 8 --screenshot window.png\";"
-              f" tet4d-play {SPHERE}{SIZE}--ui-scale 1 --offscreen --panels -o offscreen.png", "check": check_window},
+              f" tet4d-play {SPHERE}{SIZE}--ui-scale 1 --offscreen --renderer gl --panels -o offscreen.png", "check": check_window},
     {"name": "a scale out of reason", "run": ["tet4d-play", SPHERE, "--ui-scale", "20"], "exit": 2, "stderr": ["--ui-scale", "0.5 and 8"]},
     {"name": "an empty window says what to do", "timeout": 240,
      "shell": XVFB + f"{PLAY} --size 700x400 --quit-after 5 --screenshot window.png;"
-                     " tet4d-play --size 700x400 --offscreen --panels -o offscreen.png", "check": check_window},
+                     " tet4d-play --size 700x400 --offscreen --renderer gl --panels -o offscreen.png", "check": check_window},
     {"name": "one pixel", "timeout": 240, "shell": XVFB + f"{PLAY} {SPHERE} --size 1x1 --type ' ' --quit-after 4"},
     {"name": "--panels without --offscreen", "run": ["tet4d-play", SPHERE, "--panels", "-o", "a.png"], "exit": 2,
      "stderr": ["--panels", "--offscreen"], "absent": ["a.png"]},
