@@ -117,7 +117,7 @@ class GlRenderer final : public Renderer {
     if (!columns.ok()) return columns.fault();
     page.value()->bind();
     if (list.smooth && !columns.value().has_normals) {
-      const Status status =
+      Status status =
           plain_normals_ ? sumInPlainCode(surface, items, *view) : sumNormals(surface, items, *page.value());
       if (!status.ok()) return status;
     }

@@ -229,7 +229,8 @@ void MotionQuality::fall(const FrameBudget& budget, const FrameWork& whole) {
   while (level_ > 0 && (level_ == before || !may_fit(level_))) --level_;
   if (budget.targetMs() <= 0 || !budget.tellsSamplesApart() || may_fit(level_)) return;
   constexpr double kLittle = 1.1;
-  const double least = budget.expectMs(workOf(kLevels[0], whole));
+  // As all frames say: one slow picture at the coarsest level is no reason to go back to the finest.
+  const double least = budget.predictMs(workOf(kLevels[0], whole));
   while (level_ < full_level_ && budget.expectMs(workOf(kLevels[level_ + 1], whole)) <= kLittle * least) ++level_;
 }
 

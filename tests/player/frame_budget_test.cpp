@@ -211,6 +211,27 @@ TEST(MotionQuality, WhatSavesLittleIsNotGivenUp) {
   EXPECT_LE(coarse, 6);
 }
 
+// Nothing fits for the length of one picture, the first at its level: that level saves as much as before.
+TEST(MotionQuality, OneSlowCoarsePictureDoesNotBringBackTheFinest) {
+  Motion motion;
+  bool was_slow = false;
+  const auto machine = [&](double samples) {
+    if (samples > 1) return 150.0;
+    if (samples > 0.2) return samples == 1 ? 60.0 : 55.0;
+    return was_slow ? 30.0 : 140.0;
+  };
+  for (int i = 0; i < 5; ++i) motion.step(machine, false);
+  motion.step(machine);
+  for (int i = 0; i < 20; ++i) {
+    const double samples = motion.step(machine);
+    if (was_slow) {
+      EXPECT_LT(samples, 4) << i;
+    }
+    was_slow = was_slow || samples < 0.2;
+  }
+  EXPECT_TRUE(was_slow);
+}
+
 // The first picture of a renderer links its programs. Players leave it out of what they learn from.
 TEST(MotionQuality, ASlowFirstPictureDoesNotLowerTheNextTwenty) {
   const auto machine = [](double samples) { return 5 + 8 * samples; };
