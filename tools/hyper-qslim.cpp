@@ -50,7 +50,7 @@ void printPlan(const hypermesh::File& file, const Options& options, const std::v
                bool in_cells) {
   std::uint64_t vertex_bytes = 32;
   for (const qslim4d::ColumnWish& wish : wishes) vertex_bytes += 4 * file.columns()[wish.column].components;
-  const std::uint64_t passes = in_cells ? 3 : options.max_error ? options.tries : 1;
+  const std::uint64_t passes = in_cells ? 3 : options.max_error ? options.tries.value_or(qslim::kTries) : 1;
   const std::uint64_t memory =
       in_cells ? qslim4d::boundCellMemory(file, options.cell_tets) : qslim::boundMemory(file, options, wishes);
   std::printf("passes %llu\npeak_memory_bytes %llu\ntemporary_bytes %llu\noutput_bytes_at_most %llu\n",
@@ -92,6 +92,10 @@ int slim(cli::Session& session, const Options& options) {
   }
   if (qslim::isLarge(options, file) && !in_cells)
     session.note("more than --cell-tets, and yet in core: " + why_in_core);
+  if (!in_cells && session.options().resume)
+    session.note("--resume: what is simplified in core begins anew; only a run in cells can go on");
+  if (!in_cells && !session.options().temp_dir.empty())
+    session.note("--temp-dir: what is simplified in core has no temporary files");
   hypermesh::Writer writer = createWriter(session, file, options, wishes);
   const std::string provenance = provenanceOf(session, file);
   const std::optional<qslim::Sum> sum = in_cells ? qslim::simplifyCells(session, file, options, provenance, writer)
@@ -127,14 +131,14 @@ int main(int argc, char** argv) {
           "no slice is farther than E from the input's, world units: a promise, proven at every frame's time and once "
           "between frames, or the program fails",
           &o.max_error)
-      .option("--tries", "N", "how often --max-error may begin again from the input", &o.tries)
+      .option("--tries", "N", "how often --max-error may begin again from the input; default 8", &o.tries)
       .heading("Simplification")
       .option("--metric", "WHICH", "slice: spatial distance at fixed time; paper: raw 4D normals",
               cli::Choice{&o.metric, {"slice", "paper"}})
       .option("--order", "WHICH",
               "passes: parallel rounds; multichoice: best of random edges; heap: exact, the slowest, always in core",
               cli::Choice{&o.order, {"passes", "multichoice", "heap"}})
-      .option("--choices", "N", "random edges that multichoice compares", &o.choices)
+      .option("--choices", "N", "random edges that multichoice compares; default 8", &o.choices)
       .option("--align-time", "A",
               "a vertex goes to the time of an end or a frame if that costs up to 1 + A times the least; default 0.25",
               &o.align_time)

@@ -11,6 +11,7 @@
 #include "libpreprocess/exchange/slice_columns.h"
 #include "libpreprocess/outofcore/huge_pages.h"
 #include "libpreprocess/qslim4d/attributes.h"
+#include "libpreprocess/qslim4d/orders.h"
 
 namespace tet4d::qslim4d {
 namespace {
@@ -118,9 +119,7 @@ Arrays readPages(const hypermesh::File& file, const PartNumbers& numbers, const 
 }  // namespace
 
 std::uint64_t simplifyBytes(std::uint64_t vertices, std::uint64_t tets) {
-  // The list: 2.5 edges a vertex and 12 bytes each; what a round holds beside it.
-  constexpr std::uint64_t kEdgeBytes = 40, kRoundBytes = 32;
-  return slimMeshBytes(vertices, tets) + vertices * (kEdgeBytes + kRoundBytes);
+  return slimMeshBytes(vertices, tets) + orderBytes(vertices, tets);
 }
 
 std::uint64_t boundMemory(const hypermesh::File& file, std::span<const ColumnWish> columns) {
@@ -133,7 +132,9 @@ std::uint64_t boundMemory(const hypermesh::File& file, std::span<const ColumnWis
     terms += wish.in_metric ? components : 0;
   }
   if (terms > 0) column_bytes += sizeof(Quadric) + terms * sizeof(AttributeTerm);
-  return simplifyBytes(header.vertices, header.tets) + header.vertices * column_bytes + page;
+  const std::uint64_t read = header.vertices * sizeof(Vec4f) + header.tets * sizeof(hypermesh::Tet) + page;
+  return std::max({read, simplifyBytes(header.vertices, header.tets), packBytes(header.vertices, header.tets)}) +
+         header.vertices * column_bytes;
 }
 
 std::vector<PlannedColumn> planColumns(const hypermesh::File& file, std::span<const ColumnWish> wishes,

@@ -15,7 +15,9 @@ constexpr std::uint64_t kTellEvery = 4096;  // collapses
 class HeapOrder {
  public:
   HeapOrder(SlimMesh& mesh, const Options& options, Ledger& ledger)
-      : mesh_(mesh), ledger_(ledger), collapser_(mesh, options.rules), best_(mesh.positions.size()) {}
+      : mesh_(mesh), ledger_(ledger), collapser_(mesh, options.rules), best_(mesh.positions.size()) {
+    heap_.reserve(best_.size());
+  }
 
   void run() {
     for (std::uint32_t v = 0; v < best_.size(); ++v)

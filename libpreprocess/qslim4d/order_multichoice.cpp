@@ -53,6 +53,7 @@ class Multichoice {
 
   void listLive() {
     live_.clear();
+    live_.reserve(mesh_.live_tets);
     for (std::uint32_t tet = 0; tet < mesh_.tets.size(); ++tet)
       if (mesh_.isLive(tet)) live_.push_back(tet);
   }

@@ -12,14 +12,16 @@
 #include <limits>
 #include <utility>
 
+#include "libpreprocess/qslim4d/block_list.h"
 #include "libpreprocess/qslim4d/orders.h"
 
 namespace tet4d::qslim4d {
 namespace {
 
+// Marks of a vertex: its star has changed; an edge at it has changed and was too dear for the list that is being made.
+constexpr std::uint8_t kTouched = 1, kStillTouched = 2;
 constexpr float kNever = std::numeric_limits<float>::infinity();
-constexpr std::size_t kChunk = 256;        // chosen edges a task
-constexpr std::size_t kListChunk = 2048;   // vertices a task, when edges are listed
+constexpr std::size_t kChunk = 256;        // vertices or chosen edges a task
 constexpr std::size_t kListBatch = 64;     // tasks whose edges wait to be joined to the list
 constexpr std::size_t kSamples = 1 << 15;  // vertices whose edges tell how dear a list's dearest may be
 // Edges that a list begins with, for each living vertex.
@@ -27,14 +29,18 @@ constexpr double kListPerVertex = 2.5;
 // Edges looked at in a round, for each living vertex and for each collapse that is still to be made.
 constexpr double kEdgesPerVertex = 0.25, kEdgesPerCollapse = 4;
 constexpr std::uint64_t kTetsPerCollapse = 5;
+// Of those looked at in a round, more than were asked for: costs that are as good as equal count as one.
+constexpr std::uint64_t kMostEqual = 4;
 
 // Numbers of edges by cost: the upper half of a float, 128 bins an octave.
 class CostHistogram {
  public:
   void add(float cost) {
-    ++bins_[std::bit_cast<std::uint32_t>(cost) >> 16];
+    ++bins_[binOf(cost)];
     ++total_;
   }
+  // No cost is negative, but 0 may have a sign.
+  static std::uint32_t binOf(float cost) { return (std::bit_cast<std::uint32_t>(cost) & 0x7FFFFFFFu) >> 16; }
   std::uint64_t total() const { return total_; }
   // The cost that `count` of them stay at or below; kNever if there are fewer.
   float ofRank(std::uint64_t count) const {
@@ -47,7 +53,7 @@ class CostHistogram {
   }
 
  private:
-  std::vector<std::uint64_t> bins_ = std::vector<std::uint64_t>(std::size_t{1} << 15);  // no cost is negative
+  std::vector<std::uint64_t> bins_ = std::vector<std::uint64_t>(std::size_t{1} << 15);
   std::uint64_t total_ = 0;
 };
 
@@ -60,7 +66,7 @@ class Passes {
         ledger_(ledger),
         claimed_(mesh.positions.size(), 0),
         merged_(mesh.positions.size(), 0),
-        touched_(mesh.positions.size(), 1) {}
+        touched_(mesh.positions.size(), kTouched) {}
 
   void run() {
     if (!ledger_.isDone()) listEdges();
@@ -98,11 +104,18 @@ class Passes {
   float costOf(const Collapser& collapser, std::uint32_t u, std::uint32_t v) const {
     Placement placement;
     if (!collapser.evaluate(u, v, placement) || !ledger_.isAllowed(placement)) return kNever;
-    return static_cast<float>(placement.cost);
+    return static_cast<float>(placement.cost) + 0.0F;  // not -0, whose bits come last
   }
 
-  // The cost that kListPerVertex edges a vertex dearer than `least` stay below, by a sample of vertices.
-  float costToList(float least) {
+  // Whether the edge may be worth a place on the list, if it is dearer than known(): it has not been refused as things
+  // are.
+  float known(std::uint32_t u, std::uint32_t v) {
+    const auto marks = [&](std::uint32_t w) { return std::atomic_ref(touched_[w]).load(std::memory_order_relaxed); };
+    return ((marks(u) | marks(v)) & kTouched) != 0 ? least_ : std::max(least_, refused_);
+  }
+
+  // The cost that kListPerVertex edges a vertex that are worth it stay below, by a sample of vertices.
+  float costToList() {
     const std::size_t stride = mesh_.positions.size() / kSamples | 1;
     const std::size_t count = (mesh_.positions.size() + stride - 1) / stride;
     std::vector<std::vector<float>> costs((count + kChunk - 1) / kChunk);
@@ -110,57 +123,65 @@ class Passes {
       Collapser collapser(mesh_, options_.rules);
       for (std::size_t i = begin; i < end; ++i) {
         const auto u = static_cast<std::uint32_t>(i * stride);
-        for (const std::uint32_t w : collapser.neighbours(u))
-          costs[begin / kChunk].push_back(costOf(collapser, std::min(u, w), std::max(u, w)));
+        for (const std::uint32_t w : collapser.neighbours(u)) {
+          const float cost = costOf(collapser, std::min(u, w), std::max(u, w));
+          if (cost > known(u, w) && cost < kNever) costs[begin / kChunk].push_back(cost);
+        }
       }
     });
     CostHistogram histogram;
     for (const std::vector<float>& some : costs)
-      for (const float cost : some)
-        if (cost > least && cost < kNever) histogram.add(cost);
+      for (const float cost : some) histogram.add(cost);
     std::uint64_t used = 0;
     for (std::size_t i = 0; i < count; ++i) used += mesh_.isUsed(static_cast<std::uint32_t>(i * stride)) ? 1 : 0;
     // A sampled vertex shows all its edges, each of which has two ends.
     return histogram.ofRank(static_cast<std::uint64_t>(2 * kListPerVertex * static_cast<double>(used)) + 1);
   }
 
-  // The list anew: of the cheapest edges, refused ones too, for what is around them may have changed; of the next
-  // dearer ones where nothing has changed. Where the last list held the dearest, all others have been refused before:
-  // then those only whose surroundings have changed, so that a mesh with nothing left to collapse is not judged again
-  // and again.
+  // The list anew: of the cheapest edges of those that have not been refused yet, or whose surroundings have changed
+  // since; where nothing has changed at all, of those dearer than the last list's. So a mesh with little left to
+  // collapse is not judged again and again.
   void listEdges() {
     if (mesh_.corners_used > 4 * mesh_.live_tets) tidy(mesh_);
-    const bool only_touched = most_listed_ == kNever;
-    const float least = has_changed_ ? -1 : most_listed_;
-    most_listed_ = costToList(least);
-    has_changed_ = false;
+    for (std::size_t i = 0; i < edges_.size(); ++i)  // not looked at yet
+      if (edges_[i].cost < kNever) touched_[edges_[i].u] = touched_[edges_[i].v] = kTouched;
     edges_.clear();
-    edges_.reserve(static_cast<std::size_t>(1.1 * kListPerVertex * static_cast<double>(mesh_.live_vertices)) + 1024);
-    for (std::size_t begin = 0; begin < mesh_.positions.size(); begin += kListBatch * kListChunk) {
-      const std::size_t count = std::min(kListBatch * kListChunk, mesh_.positions.size() - begin);
-      join(count, kListChunk, [&](Collapser& collapser, std::size_t i, std::vector<Edge>& edges) {
-        const auto u = static_cast<std::uint32_t>(begin + i);
-        for (const std::uint32_t w : collapser.neighbours(u))
-          if (u < w && (!only_touched || touched_[u] != 0 || touched_[w] != 0)) list(collapser, u, w, least, edges);
-      });
-    }
-    std::fill(touched_.begin(), touched_.end(), std::uint8_t{0});
-  }
-
-  void list(const Collapser& collapser, std::uint32_t u, std::uint32_t v, float least, std::vector<Edge>& edges) const {
-    const float cost = costOf(collapser, u, v);
-    if (cost > least && cost <= most_listed_ && cost < kNever) edges.push_back({u, v, cost});
+    least_ = has_changed_ ? -1 : most_listed_;
+    most_listed_ = costToList();
+    has_changed_ = false;
+    join(mesh_.positions.size(), [&](Collapser& collapser, std::size_t i, std::vector<Edge>& edges) {
+      const auto u = static_cast<std::uint32_t>(i);
+      for (const std::uint32_t w : collapser.neighbours(u)) {
+        const float least = u < w ? known(u, w) : kNever;
+        if (least == kNever) continue;
+        const float cost = costOf(collapser, u, w);
+        if (cost <= least || cost == kNever) continue;
+        if (cost <= most_listed_) {
+          edges.push_back({u, w, cost});
+        } else if (cost <= refused_) {
+          for (const std::uint32_t v : {u, w})
+            std::atomic_ref(touched_[v]).fetch_or(kStillTouched, std::memory_order_relaxed);
+        }
+      }
+    });
+    refused_ = std::max(refused_, most_listed_);
+    for (std::uint8_t& touched : touched_) touched = touched / kStillTouched;
   }
 
   // Appends to the list what find(collapser, i, edges) gives for 0 <= i < count.
   template <class Find>
-  void join(std::size_t count, std::size_t chunk, const Find& find) {
-    std::vector<std::vector<Edge>> found((count + chunk - 1) / chunk);
-    inChunks(count, chunk, [&](std::size_t begin, std::size_t end) {
-      Collapser collapser(mesh_, options_.rules);
-      for (std::size_t i = begin; i < end; ++i) find(collapser, i, found[begin / chunk]);
-    });
-    for (const std::vector<Edge>& edges : found) edges_.insert(edges_.end(), edges.begin(), edges.end());
+  void join(std::size_t count, const Find& find) {
+    std::vector<std::vector<Edge>> found(kListBatch);
+    for (std::size_t first = 0; first < count; first += kListBatch * kChunk) {
+      inChunks(std::min(kListBatch * kChunk, count - first), kChunk, [&](std::size_t begin, std::size_t end) {
+        Collapser collapser(mesh_, options_.rules);
+        for (std::size_t i = begin; i < end; ++i) find(collapser, first + i, found[begin / kChunk]);
+      });
+      for (std::vector<Edge>& edges : found) {
+        for (const Edge& edge : edges) edges_.push_back(edge);
+        edges.clear();
+      }
+    }
   }
 
   void claimStar(std::uint32_t v) {
@@ -184,13 +205,22 @@ class Passes {
       mesh_.prefetchStar(next.u), mesh_.prefetchStar(next.v);
   }
 
-  // The listed edges at or below the cost of rank `look`, cheapest first: cost and number in one.
+  // The listed edges at or below the cost of rank `look`, cheapest first: cost and number in one. Of many that cost as
+  // good as the same those first on the list.
   std::vector<std::uint64_t> candidates(std::uint64_t look, const CostHistogram& histogram) const {
     const float limit = histogram.ofRank(look);
+    const std::uint32_t last_bin = CostHistogram::binOf(limit);
+    std::uint64_t room = kMostEqual * look;  // for the last bin's, below which are fewer than `look`
     std::vector<std::uint64_t> keys;
+    keys.reserve(std::min<std::uint64_t>(histogram.total(), (1 + kMostEqual) * look));
     for (std::size_t i = 0; i < edges_.size(); ++i) {
-      if (edges_[i].cost <= limit && edges_[i].cost < kNever)
-        keys.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(edges_[i].cost)} << 32 | i);
+      const float cost = edges_[i].cost;
+      if (cost > limit || cost == kNever) continue;
+      if (CostHistogram::binOf(cost) == last_bin) {
+        if (room == 0) continue;
+        --room;
+      }
+      keys.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(cost)} << 32 | i);
     }
     std::sort(keys.begin(), keys.end());
     return keys;
@@ -203,18 +233,23 @@ class Passes {
         static_cast<std::uint64_t>(16 + std::min(kEdgesPerVertex * static_cast<double>(mesh_.live_vertices),
                                                  kEdgesPerCollapse * static_cast<double>(need) / kTetsPerCollapse));
     CostHistogram histogram;
-    for (const Edge& edge : edges_)
-      if (edge.cost < kNever) histogram.add(edge.cost);
+    for (std::size_t i = 0; i < edges_.size(); ++i)
+      if (edges_[i].cost < kNever) histogram.add(edges_[i].cost);
     if (histogram.total() == 0 || (histogram.total() < look && most_listed_ < kNever && has_changed_)) return false;
     chosen_.clear();
     ++stamp_;
     const std::vector<std::uint64_t> keys = candidates(look, histogram);
+    // New corners of a round, at most: those of the two stars of each.
+    std::uint64_t room = 4 * mesh_.live_tets / kMostNewShare;
     for (std::size_t k = 0; k < keys.size(); ++k) {
       if (chosen_.size() * kTetsPerCollapse > need) break;
       const auto i = static_cast<std::uint32_t>(keys[k]);
       fetchAhead(keys, k);
       const auto [u, v, cost] = edges_[i];
       if (claimed_[u] == stamp_ || claimed_[v] == stamp_) continue;
+      const std::uint64_t corners = std::uint64_t{mesh_.stars[u].size} + mesh_.stars[v].size;
+      if (corners > room && !chosen_.empty()) break;
+      room -= std::min(room, corners);
       claimStar(u), claimStar(v);
       chosen_.push_back({u, v, i, 0, Verdict::kAllowed, false, 0, 0});
     }
@@ -250,17 +285,20 @@ class Passes {
       merged_[chosen.u] = merged_[chosen.v] = 1;
     }
     if (moved.empty()) return false;
-    std::erase_if(edges_, [&](const Edge& edge) { return merged_[edge.u] != 0 || merged_[edge.v] != 0; });
+    edges_.eraseIf([&](const Edge& edge) { return merged_[edge.u] != 0 || merged_[edge.v] != 0; });
     for (const Chosen& chosen : chosen_) merged_[chosen.v] = 0;
     // An edge between two that moved is listed by the one with the smaller number.
-    join(moved.size(), kChunk, [&](Collapser& collapser, std::size_t i, std::vector<Edge>& edges) {
+    join(moved.size(), [&](Collapser& collapser, std::size_t i, std::vector<Edge>& edges) {
       const std::uint32_t u = moved[i];
       for (const std::uint32_t w : collapser.neighbours(u)) {
-        std::atomic_ref(touched_[w]).store(1, std::memory_order_relaxed);
-        if (merged_[w] == 0 || w > u) list(collapser, std::min(u, w), std::max(u, w), -1, edges);
+        std::atomic_ref(touched_[w]).store(kTouched, std::memory_order_relaxed);
+        if (merged_[w] != 0 && w < u) continue;
+        const std::uint32_t a = std::min(u, w), b = std::max(u, w);
+        if (const float cost = costOf(collapser, a, b); cost <= most_listed_ && cost < kNever)
+          edges.push_back({a, b, cost});
       }
     });
-    for (const std::uint32_t v : moved) merged_[v] = 0, touched_[v] = 1;
+    for (const std::uint32_t v : moved) merged_[v] = 0, touched_[v] = kTouched;
     return true;
   }
 
@@ -268,17 +306,30 @@ class Passes {
   const Options& options_;
   outofcore::Executor& executor_;
   Ledger& ledger_;
-  std::vector<Edge> edges_;
+  BlockList<Edge> edges_;
+  float least_ = -1;                    // no edge of this cost or less was put on the list
   float most_listed_ = 0;               // no edge dearer than this is on the list
+  float refused_ = -1;                  // up to this cost, an edge of untouched ends is on the list or was refused
   bool has_changed_ = true;             // since the list was made
   std::vector<std::uint32_t> claimed_;  // by vertex: the round that claimed it last
   std::uint32_t stamp_ = 0;
   std::vector<std::uint8_t> merged_;   // by vertex: its edges are being made anew
-  std::vector<std::uint8_t> touched_;  // by vertex: its star has changed since the list was made
+  std::vector<std::uint8_t> touched_;  // by vertex: whether its star has changed since its edges were last listed
   std::vector<Chosen> chosen_;
 };
 
 }  // namespace
+
+std::uint64_t orderBytes(std::uint64_t vertices, std::uint64_t tets) {
+  // The heap takes 20 bytes a vertex, multichoice 4 a tetrahedron. Passes: marks; the list, which holds every edge once
+  // if all cost the same, and a mesh has as many as vertices and tetrahedra, and half its free faces; what a round
+  // looks at; what it chooses, no two beside one another; what waits to be joined to the list.
+  constexpr std::uint64_t kMarks = 6, kEdge = 12, kChosen = 16;
+  const auto looked = static_cast<std::uint64_t>(kEdgesPerVertex * (1 + kMostEqual) * static_cast<double>(vertices));
+  const std::uint64_t waiting = std::min<std::uint64_t>(kListBatch * kChunk, vertices) * 16 * kEdge;
+  return vertices * (kMarks + kChosen) + (2 * vertices + tets) * kEdge + looked * sizeof(std::uint64_t) + waiting +
+         (std::uint64_t{1} << 20);
+}
 
 void runPasses(SlimMesh& mesh, const Options& options, outofcore::Executor& executor, Ledger& ledger) {
   Passes(mesh, options, executor, ledger).run();

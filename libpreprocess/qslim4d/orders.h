@@ -38,6 +38,9 @@ class Ledger {
   std::uint64_t start_ = 0;
 };
 
+// Bytes that the one of them that takes most holds at most beside the mesh.
+std::uint64_t orderBytes(std::uint64_t vertices, std::uint64_t tets);
+
 void runHeap(SlimMesh& mesh, const Options& options, Ledger& ledger);
 void runMultichoice(SlimMesh& mesh, const Options& options, Ledger& ledger);
 void runPasses(SlimMesh& mesh, const Options& options, outofcore::Executor& executor, Ledger& ledger);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "libpreprocess/error.h"
@@ -63,47 +64,72 @@ std::vector<std::uint64_t> numbersOf(std::span<const Page> pages, std::size_t pa
   return numbers;
 }
 
-}  // namespace
-
-PackedMesh pack(const SlimMesh& mesh) {
-  std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
-    if (!mesh.isLive(t)) continue;
-    for (const std::uint32_t v : mesh.tets[t]) number[v] = 0;
-  }
+// Vertices and their columns by time, those of one time as they were. number: not kNone for what is used; the new
+// numbers then.
+void packVertices(SlimMesh& mesh, std::vector<std::uint32_t>& number, PackedMesh& packed) {
   std::vector<std::uint32_t> order;
+  order.reserve(number.size() - static_cast<std::size_t>(std::count(number.begin(), number.end(), kNone)));
   for (std::uint32_t v = 0; v < number.size(); ++v)
     if (number[v] != kNone) order.push_back(v);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return mesh.positions[a].t < mesh.positions[b].t; });
-  PackedMesh packed;
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return mesh.positions[a].t != mesh.positions[b].t ? mesh.positions[a].t < mesh.positions[b].t : a < b;
+  });
+  packed.vertices.reserve(order.size());
   for (const std::uint32_t v : order) {
     number[v] = static_cast<std::uint32_t>(packed.vertices.size());
     packed.vertices.push_back(mesh.positions[v]);
   }
-  for (const SlimColumn& column : mesh.columns.list) {
+  release(mesh.positions);
+  for (SlimColumn& column : mesh.columns.list) {
     std::vector<float>& values = packed.columns.emplace_back();
     values.reserve(order.size() * column.components);
     for (const std::uint32_t v : order) {
       const auto first = column.values.begin() + static_cast<std::ptrdiff_t>(std::size_t{v} * column.components);
       values.insert(values.end(), first, first + column.components);
     }
+    release(column.values);
   }
-  packed.tets.reserve(mesh.live_tets);
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
-    if (!mesh.isLive(t)) continue;
-    hypermesh::Tet tet = mesh.tets[t];
+}
+
+// Tetrahedra by their least vertex, those of one vertex as they were.
+void packTets(const std::vector<hypermesh::Tet>& tets, PackedMesh& packed) {
+  const auto least = [](const hypermesh::Tet& tet) { return std::min({tet[0], tet[1], tet[2], tet[3]}); };
+  std::vector<std::uint64_t>& first = packed.first_tet;
+  first.assign(packed.vertices.size() + 1, 0);
+  for (const hypermesh::Tet& tet : tets) ++first[least(tet)];
+  std::exclusive_scan(first.begin(), first.end(), first.begin(), std::uint64_t{0});
+  packed.tets.resize(tets.size());
+  for (const hypermesh::Tet& tet : tets) packed.tets[first[least(tet)]++] = tet;
+  // Each has come to where the next one's begin.
+  std::shift_right(first.begin(), first.end(), 1);
+  first.front() = 0;
+}
+
+}  // namespace
+
+PackedMesh pack(SlimMesh mesh) {
+  // What only collapses read makes room for the result.
+  release(mesh.quadrics), release(mesh.corners), release(mesh.stars), release(mesh.walls), release(mesh.is_boundary);
+  release(mesh.columns.squares), release(mesh.columns.sums);
+  std::erase_if(mesh.tets, [](const hypermesh::Tet& tet) { return tet[0] == kNone; });
+  std::vector<std::uint32_t> number(mesh.positions.size(), kNone);
+  for (const hypermesh::Tet& tet : mesh.tets)
+    for (const std::uint32_t v : tet) number[v] = 0;
+  PackedMesh packed;
+  packVertices(mesh, number, packed);
+  for (hypermesh::Tet& tet : mesh.tets)
     for (std::uint32_t& v : tet) v = number[v];
-    packed.tets.push_back(tet);
-  }
-  const auto first = [](const hypermesh::Tet& tet) { return std::min({tet[0], tet[1], tet[2], tet[3]}); };
-  std::stable_sort(packed.tets.begin(), packed.tets.end(),
-                   [&](const hypermesh::Tet& a, const hypermesh::Tet& b) { return first(a) < first(b); });
-  packed.first_tet.assign(packed.vertices.size() + 1, packed.tets.size());
-  for (std::size_t t = packed.tets.size(); t-- > 0;) packed.first_tet[first(packed.tets[t])] = t;
-  for (std::size_t v = packed.vertices.size(); v-- > 0;)
-    packed.first_tet[v] = std::min(packed.first_tet[v], packed.first_tet[v + 1]);
+  release(number);
+  packTets(mesh.tets, packed);
   return packed;
+}
+
+std::uint64_t packBytes(std::uint64_t vertices, std::uint64_t tets) {
+  // Vertices with their first tetrahedra, and tetrahedra; beside them the mesh's and the numbers, or the numbers in the
+  // file and a page, which may be the whole, twice: named anew, and as it is written.
+  const std::uint64_t packed = vertices * (sizeof(Vec4f) + sizeof(std::uint64_t)) + tets * sizeof(hypermesh::Tet);
+  return packed + std::max(vertices * (sizeof(Vec4f) + 2 * sizeof(std::uint32_t)) + tets * sizeof(hypermesh::Tet),
+                           vertices * (sizeof(Vec4f) + sizeof(std::uint64_t)) + 2 * tets * sizeof(hypermesh::Tet));
 }
 
 void writeMeshes(std::span<const PackedMesh> parts, hypermesh::Writer& writer, outofcore::Progress& progress) {

@@ -23,8 +23,11 @@ struct PackedMesh {
   float error_measured = -1;                // -1: not measured
 };
 
-// O(tets log tets).
-PackedMesh pack(const SlimMesh& mesh);
+// Uses `mesh` up: of one that is moved here no more is held than simplifying it took. O(tets + vertices log vertices).
+PackedMesh pack(SlimMesh mesh);
+
+// Bytes that pack() and writeMeshes() hold at most of a mesh that had so many vertices and tetrahedra.
+std::uint64_t packBytes(std::uint64_t vertices, std::uint64_t tets);
 
 // Writes the parts of a file (phase "write"), one for a file without parts: a page for one frame of a part or for
 // several that have little, pages of all parts by their first time. The writer has as many columns as each part and is

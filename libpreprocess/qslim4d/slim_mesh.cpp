@@ -127,31 +127,28 @@ void facesFrom(const SlimMesh& mesh, std::uint32_t v, std::vector<SeenFace>& see
   });
 }
 
-// The faces of one tetrahedron, in order of vertices.
-std::vector<SeenFace> boundaryFaces(const SlimMesh& mesh, const MeshContext& context) {
-  struct Found {
-    std::vector<SeenFace> faces;
-    std::optional<Face> refused;
-  };
-  std::vector<Found> found((mesh.positions.size() + kChunk - 1) / kChunk);
+using Faces = std::vector<SeenFace>;
+
+// The faces of one tetrahedron, in order of vertices: a list for every so many of them.
+std::vector<Faces> boundaryFaces(const SlimMesh& mesh, const MeshContext& context) {
+  std::vector<Faces> found((mesh.positions.size() + kChunk - 1) / kChunk);
+  std::vector<std::optional<Face>> refused(found.size());
   inChunks(context.executor, mesh.positions.size(), [&](std::size_t chunk) {
-    std::vector<SeenFace> seen;
+    Faces seen;
     const std::size_t end = std::min(mesh.positions.size(), (chunk + 1) * kChunk);
     for (std::size_t v = chunk * kChunk; v < end; ++v) {
       facesFrom(mesh, static_cast<std::uint32_t>(v), seen);
       for (std::size_t i = 0, next = 0; i < seen.size(); i = next) {
         while (next < seen.size() && seen[next].face == seen[i].face) ++next;
-        if (next - i > 2 && !context.keep_non_manifold && !found[chunk].refused) found[chunk].refused = seen[i].face;
-        if (next - i == 1) found[chunk].faces.push_back(seen[i]);
+        if (next - i > 2 && !context.keep_non_manifold && !refused[chunk]) refused[chunk] = seen[i].face;
+        if (next - i == 1) found[chunk].push_back(seen[i]);
       }
     }
+    found[chunk].shrink_to_fit();
   });
-  std::vector<SeenFace> faces;
-  for (const Found& some : found) {
-    if (some.refused) refuseFace(*some.refused, context.cell);
-    faces.insert(faces.end(), some.faces.begin(), some.faces.end());
-  }
-  return faces;
+  for (const std::optional<Face>& face : refused)
+    if (face) refuseFace(*face, context.cell);
+  return found;
 }
 
 // Marks boundary vertices, and holds what of the boundary is on no wall.
@@ -160,12 +157,14 @@ void findBoundary(SlimMesh& mesh, Metric metric, const MeshContext& context) {
     return (mesh.is_boundary[face[0]] & mesh.is_boundary[face[1]] & mesh.is_boundary[face[2]] & flag) != 0;
   };
   const bool has_terms = context.cell != nullptr && !context.cell->quadrics.empty();
-  for (const auto& [face, apex] : boundaryFaces(mesh, context)) {
-    if (context.cell != nullptr && allHave(face, kLocked)) continue;  // cut, not bounded
-    for (const std::uint32_t w : face) mesh.is_boundary[w] |= kOnBoundary;
-    if (has_terms && !allHave(face, kUncounted)) continue;
-    if ((mesh.walls[face[0]] & mesh.walls[face[1]] & mesh.walls[face[2]]) == 0)
-      addBoundaryQuadric(mesh, face, apex, metric);
+  for (const Faces& faces : boundaryFaces(mesh, context)) {
+    for (const auto& [face, apex] : faces) {
+      if (context.cell != nullptr && allHave(face, kLocked)) continue;  // cut, not bounded
+      for (const std::uint32_t w : face) mesh.is_boundary[w] |= kOnBoundary;
+      if (has_terms && !allHave(face, kUncounted)) continue;
+      if ((mesh.walls[face[0]] & mesh.walls[face[1]] & mesh.walls[face[2]]) == 0)
+        addBoundaryQuadric(mesh, face, apex, metric);
+    }
   }
 }
 
@@ -226,13 +225,20 @@ void tidy(SlimMesh& mesh) {
 
 void makeRoom(SlimMesh& mesh, std::uint64_t count) {
   if (mesh.corners_used + count <= mesh.corners.size()) return;
+  // Corners are laid out from nothing: where they need a larger pool, the old one goes first.
+  const std::uint64_t needed = 4 * mesh.live_tets + count;
+  if (needed > mesh.corners.size()) {
+    release(mesh.corners);
+    outofcore::reserveHuge(mesh.corners, needed);
+    mesh.corners.resize(needed);
+  }
   tidy(mesh);
-  if (mesh.corners_used + count > mesh.corners.size()) mesh.corners.resize(mesh.corners_used + count);
 }
 
 std::uint64_t slimMeshBytes(std::uint64_t vertices, std::uint64_t tets) {
+  constexpr std::uint64_t kRoom = std::min(kRoomShare, kMostNewShare);
   return vertices * (sizeof(Vec4f) + sizeof(Quadric) + sizeof(Star) + 2) +
-         tets * (sizeof(hypermesh::Tet) + 4 * sizeof(std::uint32_t) * (kRoomShare + 1) / kRoomShare);
+         tets * (sizeof(hypermesh::Tet) + 4 * sizeof(std::uint32_t) * (kRoom + 1) / kRoom);
 }
 
 }  // namespace tet4d::qslim4d

@@ -40,6 +40,12 @@ enum VertexFlags : std::uint8_t {
   kUncounted = 4,   // it was locked whenever free boundaries were looked for so far
 };
 
+// An empty list in place of `items`, whose memory goes back; assigning {} would keep it.
+template <class Items>
+void release(Items& items) {
+  items = Items();
+}
+
 // Where a vertex's corners stand in SlimMesh::corners; none: the vertex is dead or unused.
 struct Star {
   std::uint32_t begin = 0;
@@ -108,6 +114,9 @@ SlimMesh makeSlimMesh(std::vector<Vec4f> positions, std::vector<hypermesh::Tet> 
 // Drops dead tetrahedra, which gives those that are left new numbers, and lays all stars out again, in order of
 // vertices and tetrahedra. O(tets).
 void tidy(SlimMesh& mesh);
+
+// Corners that may be written between two makeRoom(), for each living one: slimMeshBytes() counts on no more.
+inline constexpr std::uint64_t kMostNewShare = 4;
 
 // Makes room for `count` more corners, by tidy() if there is none.
 void makeRoom(SlimMesh& mesh, std::uint64_t count);

@@ -28,7 +28,7 @@ void runCell(const SweepTask& task, std::size_t cell, outofcore::WorkFolder& fol
   const CellContext context{loaded.flags, loaded.quadrics, loaded.ids, task.speed};
   SlimMesh mesh = makeSlimMesh(std::move(loaded.positions), std::move(loaded.tets), task.domain, task.map, task.metric,
                                {false, &executor, &context});
-  loaded.flags = {}, loaded.quadrics = {};
+  release(loaded.flags), release(loaded.quadrics);
   Options options = task.options;
   options.target_tets = task.targets[cell];
   // Every cell draws edges of its own.

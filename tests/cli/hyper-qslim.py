@@ -219,4 +219,34 @@ CASES = [
         "absent": ["x.t4h", "x.t4h.cells"],
         "needs": ["tet4d-mc"],
     },
+    {
+        "name": "in core no more is held than planned, as a hard limit, whatever the order and however little is taken away",
+        "shell": DAM + "for r in 0.9 0.1; do for o in passes heap multichoice; do q=\"dam.t4h --ratio $r --order $o --measure 0 -j 1 -q\"; "
+        "plan=$(hyper-qslim $q -n -o x.t4h | awk '/^peak_memory_bytes/ { print $2 }'); "
+        "(ulimit -d $((plan / 1024 + 16384)); hyper-qslim $q -f -o x.t4h); done; done",
+        "needs": ["tet4d-mc"],
+        "timeout": 300,
+    },
+    {
+        "name": "--choices without --order multichoice is a usage error",
+        "shell": DAM + "hyper-qslim dam.t4h --ratio 0.5 --choices 3 -o x.t4h",
+        "exit": 2,
+        "stderr": ["--choices", "--order multichoice"],
+        "absent": ["x.t4h"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "--tries without --max-error is a usage error",
+        "shell": DAM + "hyper-qslim dam.t4h --ratio 0.5 --tries 3 -o x.t4h",
+        "exit": 2,
+        "stderr": ["--tries", "--max-error"],
+        "absent": ["x.t4h"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "in core --resume and --temp-dir say that they do nothing",
+        "shell": DAM + "hyper-qslim dam.t4h --ratio 0.5 --resume --temp-dir . --measure 0 -o x.t4h",
+        "stderr": ["--resume: what is simplified in core", "--temp-dir: what is simplified in core"],
+        "needs": ["tet4d-mc"],
+    },
 ]

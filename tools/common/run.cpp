@@ -161,9 +161,11 @@ int catchAll(const std::string& program, const std::function<std::uint64_t()>& m
     return report(program, error.fault());
   } catch (const std::bad_alloc&) {
     const std::uint64_t limit = memory();
-    return report(program, {FaultCode::kOutOfMemory, "", "", "the machine has no more memory to give",
-                            limit != 0 ? "give a smaller --memory or fewer --threads"
-                                       : "use a machine with more memory, or fewer threads"});
+    return report(program,
+                  {FaultCode::kOutOfMemory, "", "", "the machine has no more memory to give",
+                   limit != 0 ? "--memory bounds what is planned, not what the machine has to give: it must have room "
+                                "for the plan and the program itself, or give fewer --threads"
+                              : "use a machine with more memory, or fewer threads"});
   } catch (const std::system_error& error) {
     const bool full = error.code() == std::errc::no_space_on_device;
     return report(program, {full ? FaultCode::kNoSpace : FaultCode::kIo, "", "", error.what(), ""});

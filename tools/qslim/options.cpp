@@ -68,11 +68,16 @@ void checkOptions(const Options& options) {
   if (options.error && !(*options.error >= 0)) refuse("--error", "expected a length of 0 or more", "give --error 0.5");
   if (options.max_error && !(*options.max_error > 0))
     refuse("--max-error", "expected a length above 0", "give --max-error 0.5");
-  if (options.tries < 1 || options.tries > 100) refuse("--tries", "expected 1 to 100", "give --tries 8");
+  if (options.tries && (*options.tries < 1 || *options.tries > 100))
+    refuse("--tries", "expected 1 to 100", "give --tries 8");
+  if (options.tries && !options.max_error)
+    refuse("--tries", "counts only under --max-error", "give --max-error too, or leave it out");
   if (options.align_time && !(*options.align_time >= 0))
     refuse("--align-time", "expected a number of 0 or more", "give --align-time 0.25");
   if (options.cell_tets < 1000) refuse("--cell-tets", "expected at least 1000", "leave it at its default");
-  if (options.choices == 0) refuse("--choices", "expected at least 1", "give --choices 8");
+  if (options.choices && *options.choices == 0) refuse("--choices", "expected at least 1", "give --choices 8");
+  if (options.choices && options.order != "multichoice")
+    refuse("--choices", "counts only with --order multichoice", "give --order multichoice too, or leave it out");
   if (options.most_star < 8 || options.most_star > 100'000)
     refuse("--max-star", "expected 8 to 100000", "give --max-star 80");
 }
@@ -96,7 +101,7 @@ qslim4d::Options slimOptions(const Options& options, std::uint64_t seed, std::ui
   }
   if (options.ratio) slim.target_tets = static_cast<std::uint64_t>(std::floor(*options.ratio * part));
   if (options.error) slim.most_error = *options.error;
-  slim.choices = options.choices;
+  slim.choices = options.choices.value_or(kChoices);
   slim.seed = seed;
   if (options.align_time) slim.rules.align = *options.align_time;
   slim.rules.most_star = static_cast<std::uint32_t>(options.most_star);

@@ -14,12 +14,14 @@
 
 namespace tet4d::qslim {
 
+inline constexpr std::uint64_t kChoices = 8, kTries = 8;
+
 struct Options {
   std::string input, metric = "slice", order = "passes", codec = "raw", non_manifold = "refuse", columns = "all",
                      attributes = "none";
   std::optional<double> ratio, error, max_error, align_time;
-  std::optional<std::uint64_t> tets;
-  std::uint64_t choices = 8, most_star = 80, measure_times = 7, tries = 8, cell_tets = qslim4d::kCellTets;
+  std::optional<std::uint64_t> tets, choices, tries;  // the last two as kChoices and kTries where not given
+  std::uint64_t most_star = 80, measure_times = 7, cell_tets = qslim4d::kCellTets;
 };
 
 // Throws Error{kUsage} for what makes no sense.

@@ -28,7 +28,7 @@ class PartWork {
     std::vector<double> frames = measure::framesAndBetween(file_);
     SimplifiedPart best;
     const qslim4d::PromiseOutcome outcome =
-        qslim4d::keepPromise(*options_.max_error, options_.tries, [&](double estimate) {
+        qslim4d::keepPromise(*options_.max_error, options_.tries.value_or(kTries), [&](double estimate) {
           const double most = std::min(estimate, slim_options_.most_error);
           SimplifiedPart tried = simplify(most);
           const measure::SliceBound bound = confirm(tried.mesh, frames);
@@ -54,7 +54,7 @@ class PartWork {
     qslim4d::Options options = slim_options_;
     options.most_error = most_error;
     part.stats = qslim4d::simplify(mesh, options, session_.executor(), session_.progress());
-    part.mesh = qslim4d::pack(mesh);
+    part.mesh = qslim4d::pack(std::move(mesh));
     part.mesh.error_estimated = static_cast<float>(part.stats.largest_error);
     return part;
   }

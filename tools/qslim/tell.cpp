@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <new>
+#include <string>
 
 #include "libpreprocess/error.h"
 #include "libpreprocess/measure/column_distance.h"
 #include "libpreprocess/measure/slice_distance.h"
+#include "libpreprocess/qslim4d/space.h"
 #include "tools/common/exit_codes.h"
 
 namespace tet4d::qslim {
 namespace {
+
+constexpr double kToleranceInCells = 0.01;  // of the largest distance
+constexpr std::uint64_t kMostPieces = 200'000;
 
 void measureColumns(cli::Session& session, const hypermesh::File& result, const hypermesh::File& reference,
                     const std::vector<double>& frames) {
@@ -25,12 +31,37 @@ void measureColumns(cli::Session& session, const hypermesh::File& result, const 
   }
 }
 
-}  // namespace
+// Close enough to judge a simplification by, and found at once: where all of a slice is about equally far, the exact
+// maximum would be looked for in millions of pieces.
+tet4d::measure::DistanceOptions distanceOptions(const AffineMap& map) {
+  tet4d::measure::DistanceOptions options;
+  options.tolerance = kToleranceInCells * qslim4d::spaceOf(map).cell;
+  options.max_pieces = kMostPieces;
+  return options;
+}
 
-void measure(cli::Session& session, const hypermesh::File& reference, std::uint64_t times) {
+// Bytes that comparing slices holds: those of both, their trees, and the pieces of the search. A slice has a triangle
+// for two of the tetrahedra in the pages it is cut from.
+std::uint64_t measureBytes(const hypermesh::File& mesh, const std::vector<double>& frames) {
+  constexpr std::uint64_t kTriangleBytes = 200, kPieceBytes = 200;
+  std::uint64_t most = 0;
+  for (const double frame : frames) {
+    std::uint64_t tets = 0;
+    for (std::size_t k = 0; k < mesh.geometryPages(); ++k) {
+      const paged::PageEntry& page = mesh.geometryEntry(k);
+      if (page.bounds.min.t <= frame && frame <= page.bounds.max.t) tets += page.counts[2];
+    }
+    most = std::max(most, tets);
+  }
+  return most / 2 * (kTriangleBytes + kPieceBytes) + kMostPieces * kPieceBytes;
+}
+
+void compare(cli::Session& session, const hypermesh::File& reference, std::uint64_t times) {
   const hypermesh::File result = unwrap(hypermesh::File::open(session.options().output));
   const auto frames = tet4d::measure::sampleFrames(reference, times);
-  tet4d::measure::DistanceOptions options;
+  const auto reserved = session.memory().reserve(
+      std::max(measureBytes(reference, frames), measureBytes(result, frames)), "the slices that are compared");
+  const tet4d::measure::DistanceOptions options = distanceOptions(reference.header().index_to_world);
   const tet4d::measure::SliceDistance distance =
       tet4d::measure::compareSlices(result, reference, frames, options, session.executor(), session.progress());
   session.stats().error("slice_rms_world", distance.rms);
@@ -42,6 +73,22 @@ void measure(cli::Session& session, const hypermesh::File& reference, std::uint6
                 frames.size(), distance.rms, distance.p99, distance.max);
   session.note(text);
   measureColumns(session, result, reference, frames);
+}
+
+}  // namespace
+
+void measure(cli::Session& session, const hypermesh::File& reference, std::uint64_t times) {
+  const auto warn = [&](const std::string& why) {
+    session.warn("the result is written, but not measured: " + why + "; --measure 0 leaves that out");
+  };
+  try {
+    compare(session, reference, times);
+  } catch (const Error& error) {
+    if (error.fault().code != FaultCode::kOutOfMemory) throw;
+    warn(error.fault().what + (error.fault().remedy.empty() ? "" : ": " + error.fault().remedy));
+  } catch (const std::bad_alloc&) {
+    warn("the machine has no more memory to give");
+  }
 }
 
 Sum sumOf(const std::vector<SimplifiedPart>& parts) {

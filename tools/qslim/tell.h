@@ -26,7 +26,8 @@ void tell(cli::Session& session, const Options& options, const Sum& sum);
 // What --max-error came to where it could not be kept; nothing has been written. Returns the exit code.
 int tellFailure(cli::Session& session, const Options& options, const SimplifiedPart& part);
 
-// What the slices of the output and their columns really lost, by passes that know nothing of quadrics.
+// What the slices of the output and their columns really lost, by passes that know nothing of quadrics; the largest to
+// a hundredth of a cell, or what a bounded search finds. Without memory for that a warning: the result stays.
 void measure(cli::Session& session, const hypermesh::File& reference, std::uint64_t times);
 
 }  // namespace tet4d::qslim
