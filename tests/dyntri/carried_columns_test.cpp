@@ -1,5 +1,6 @@
 // A file of dynamic triangles beside the hypermesh it was made from: values and parts are those of the hypermesh.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -90,7 +91,8 @@ class MeshWriter {
 };
 
 std::string inFolder(const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "tet4d_dyntri";
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("tet4d_dyntri-" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   return (folder / name).string();
 }

@@ -1,6 +1,7 @@
 #include "libpreprocess/exchange/read_png.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -32,7 +33,7 @@ class ReadPng : public ::testing::Test {
   ~ReadPng() override { std::filesystem::remove(path_); }
 
  private:
-  std::string path_ = ::testing::TempDir() + "read_png_test.png";
+  std::string path_ = ::testing::TempDir() + "read_png_test-" + std::to_string(::getpid()) + ".png";
 };
 
 TEST_F(ReadPng, PixelsFromTheTopOpaque) {

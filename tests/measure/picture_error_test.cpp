@@ -1,6 +1,7 @@
 #include "libpreprocess/measure/picture_error.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -101,7 +102,7 @@ class RunRecords : public ::testing::Test {
   ~RunRecords() override { std::filesystem::remove(path_); }
 
  private:
-  std::string path_ = ::testing::TempDir() + "run_record_test.json";
+  std::string path_ = ::testing::TempDir() + "run_record_test-" + std::to_string(::getpid()) + ".json";
 };
 
 TEST_F(RunRecords, AreReadWithWhatIsNewPassedOver) {

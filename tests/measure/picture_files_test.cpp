@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <spng.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -72,7 +73,7 @@ class PictureFiles : public ::testing::Test {
   std::string at(const std::string& name) const { return folder_ + "/" + name; }
 
  private:
-  std::string folder_ = ::testing::TempDir() + "picture_files_test";
+  std::string folder_ = ::testing::TempDir() + "picture_files_test-" + std::to_string(::getpid());
 };
 
 TEST_F(PictureFiles, RowsAreThoseOfTheWholePicture) {

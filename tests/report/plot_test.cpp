@@ -1,6 +1,7 @@
 #include "tools/report/plot.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -144,7 +145,7 @@ TEST(Plot, BothFormatsAreWritten) {
   EXPECT_NE(svgOf(plot).find("5 &lt; 7"), std::string::npos);
   EXPECT_EQ(svgOf(plot), svgOf(plot));
   if (!hasPng()) GTEST_SKIP() << "without cairo";
-  const std::string path = testing::TempDir() + "/tet4d-plot-test.png";
+  const std::string path = testing::TempDir() + "/tet4d-plot-test-" + std::to_string(::getpid()) + ".png";
   writePng(plot, path);
   EXPECT_GT(std::filesystem::file_size(path), 1000U);
   std::filesystem::remove(path);
