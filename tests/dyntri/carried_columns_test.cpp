@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -133,7 +135,7 @@ std::vector<float> rowsOf(const File& file, std::size_t column, std::size_t page
   return rows;
 }
 
-bool sameBits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool sameBits(float a, float b) { return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b); }
 
 TEST(CarriedColumns, EveryVertexHasTheValuesOfTheHypermesh) {
   const Made made = makeMesh("columns.t4h");
