@@ -123,7 +123,7 @@ class Runner:
         for need in case.get("needs", []):
             if not (need in self.programs or (need.startswith("/") and os.path.exists(need))):
                 raise Skip(f"{need} is not there")
-        if self.sanitized and "data" in case.get("limits", {}):
+        if self.sanitized and ("data" in case.get("limits", {}) or "ulimit -d" in case.get("shell", "")):
             raise Skip("sanitizers need more address space")
 
     def set_limits(self, limits):
