@@ -6,6 +6,7 @@
 
 #include "libpreprocess/error.h"
 #include "libpreprocess/outofcore/record_files.h"
+#include "libpreprocess/qslim4d/slim_mesh.h"
 
 namespace tet4d::qslim4d {
 namespace {
@@ -71,7 +72,7 @@ class Scatter {
 
   std::vector<CellSize> finish(const CellPaths& paths, std::size_t buffer_bytes) {
     vertices_.finish(), tets_.finish(), quadrics_.finish(), users_.finish();
-    order_ = {}, cell_ = {}, user_ = {}, slot_ = {}, given_ = {};
+    release(order_), release(cell_), release(user_), release(slot_), release(given_);
     BucketFiles shared(paths.shared(), tree_.cells(), buffer_bytes / 2);
     for (std::size_t range = 0; range < users_.size(); ++range) {
       if (users_.bytes(range) != 0) findShared(range, shared, buffer_bytes / 4);

@@ -1,7 +1,7 @@
 // A tetrahedral mesh that edges are collapsed in: positions, tetrahedra, and the star of every vertex as a run of
 // corners in one pool. Private to qslim4d.
 //
-// Memory: 34 bytes a tetrahedron, 154 bytes a vertex. A merged star is written anew at the pool's end; dead corners
+// Memory: 33 bytes a tetrahedron, 154 bytes a vertex. A merged star is written anew at the pool's end; dead corners
 // stay in the stars of others until the pool is laid out again.
 #pragma once
 
