@@ -19,6 +19,8 @@ def check_promise(result):
     assert 1 <= counts["tries"] <= 8, counts
     assert counts["tets"] < stats(result, "fine.json")["counts"]["tets"], "a larger promise takes more"
     assert error["slice_max_world"] <= error["promised_world"]
+    if not result.stdout:
+        return  # a build without OpenMesh reads no PLY, and has said so
     apart = json.loads(result.stdout)
     assert 0 < apart["max"] <= error["confirmed_bound_world"] * (1 + 1e-6), (apart, error)
 
@@ -105,7 +107,7 @@ CASES = [
         "shell": COLUMNS + "hyper-qslim dam.t4h --max-error 0.005 --measure 0 -q -o fine.t4h --stats fine.json; "
         "hyper-qslim dam.t4h --max-error 0.02 --measure 3 -q -o small.t4h --stats s.json; "
         "tet4d-convert dam.t4h --at 1f --columns none -q -o a.ply; tet4d-convert small.t4h --at 1f --columns none -q -o b.ply; "
-        "tet4d-report distance a.ply b.ply --json -q",
+        "tet4d-report distance a.ply b.ply --json -q 2> said || grep -q TET4D_WITH_OPENMESH said",
         "check": check_promise,
         "needs": ["tet4d-mc", "tet4d-convert", "tet4d-report"],
         "timeout": 300,
@@ -118,6 +120,7 @@ CASES = [
         "absent": ["x.t4h"],
         "json_file": {"s.json": {"counts.tries": 2, "error.least_measured_world": {"at_least": 1e-9}}},
         "needs": ["tet4d-mc"],
+        "timeout": 300,
     },
     {
         "name": "cells: a valid mesh of as many tetrahedra as asked for",
