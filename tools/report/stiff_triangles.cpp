@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSweep = "stiff-dyntri";
 
-// Along z onto all cells, without lights: the same picture whatever the world is like, but for what noise does.
+// Along z onto all cells, without lights or walls: the same picture whatever the world is like, but for what noise
+// does. An edge of a wall would lie on samples, where rounding decides.
 void writeCamera(const StiffCase& one, const std::string& path) {
   const double cells = static_cast<double>(one.ball.samples - 1), middle = cells / 2;
   const double depth = one.aspect * cells;
@@ -26,7 +27,7 @@ void writeCamera(const StiffCase& one, const std::string& path) {
                    {"lights", Row::array()},
                    {"ambient", {1, 1, 1}},
                    {"material", {{"color", {0.9, 0.6, 0.2}}, {"back_color", {0.9, 0.6, 0.2}}}},
-                   {"background", {{"top", {0, 0, 0}}, {"bottom", {0, 0, 0}}}}};
+                   {"background", {0, 0, 0}}};
   outofcore::OutputFile file(path, true);
   file.write(camera.dump());
   file.commit();
