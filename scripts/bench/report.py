@@ -22,7 +22,7 @@ TABLES = [
     ("stiff", "Stiff cases", "`tet4d-mc` on {input}, placed in another world; errors in cells.",
      ["case", "value", "tets", "seconds_wall", "seconds_cpu", "rms_at", "max_at", "rms_between", "max_between"]),
     ("stiff-dyntri", "Stiff cases through to pictures",
-     "`dyntri-build` and `tet4d-play` on {input}, placed in another world and drawn along z without lights, against the pictures of unit cells; "
+     "`dyntri-build` and `tet4d-play` on {input}, placed in another world and drawn along z without lights or walls, against the pictures of unit cells; "
      "errors in 255ths of linear light.",
      ["case", "value", "tets", "seconds_wall", "seconds_cpu", "ms_p50", "rmse_255", "renderers_apart_255"]),
     ("play", "Pictures",
