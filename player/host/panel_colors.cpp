@@ -289,8 +289,9 @@ void layOutColumns(Viewer& viewer) {
   if (file == nullptr) return ImGui::TextDisabled("open a file first");
   const auto& columns = file->file.columns();
   if (columns.empty()) {
-    ImGui::TextDisabled("this file has none: tet4d-mc --velocity,");
-    ImGui::TextDisabled("--normals, --field write them");
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextDisabled("this file has none: tet4d-mc --velocity, --normals, --field write them");
+    ImGui::PopTextWrapPos();
     return;
   }
   ViewerState& state = viewer.state();
