@@ -131,7 +131,8 @@ Status checkPages(const container::Reader& reader, std::span<const paged::PageEn
       continue;
     }
     if (counts[0] == 0 || counts[0] > kMostVertices) return bad(i, "has no vertex, or more than 65535");
-    if (counts[1] == 0 || counts[1] > pages[i].raw_bytes / sizeof(LocalTet)) return bad(i, "has a count beyond its size");
+    if (counts[1] == 0 || counts[1] > pages[i].raw_bytes / sizeof(LocalTet))
+      return bad(i, "has a count beyond its size");
   }
   return {};
 }
@@ -232,9 +233,9 @@ Result<paged::PageBytes> File::loadColumn(std::size_t c, std::size_t p) const {
 Result<std::uint64_t> File::contentDigest() const {
   auto pages = pages_.contentDigest();
   if (!pages.ok()) return pages.fault();
-  const std::array digests{container::xxh3(std::as_bytes(std::span(header_, 1))), container::xxh3(std::as_bytes(times_)),
-                           container::xxh3(std::as_bytes(nodes_)), container::xxh3(std::as_bytes(columns_)),
-                           pages.value()};
+  const std::array digests{container::xxh3(std::as_bytes(std::span(header_, 1))),
+                           container::xxh3(std::as_bytes(times_)), container::xxh3(std::as_bytes(nodes_)),
+                           container::xxh3(std::as_bytes(columns_)), pages.value()};
   return container::xxh3(std::as_bytes(std::span(digests)));
 }
 
@@ -256,8 +257,7 @@ Status File::verify() const {
       auto column = loadColumn(c, p);
       if (!column.ok()) return column.fault();
       const std::uint64_t used = patchEntry(p).counts[0] * columns_[c].components * sizeof(float);
-      Status zero =
-          mesh_sections::checkColumnPadding(*reader_, column.value().bytes(), used, p * stride() + 1 + c);
+      Status zero = mesh_sections::checkColumnPadding(*reader_, column.value().bytes(), used, p * stride() + 1 + c);
       if (!zero.ok()) return zero;
     }
   }

@@ -1,15 +1,15 @@
 // patch_dag (.t4p): a hypermesh at every resolution. Ponchio & Hormann 2008, sec. 6.
 //
-// Nodes are cells that were simplified; arcs are patches, pieces of mesh. A patch was left by its lower node `to` and is
-// replaced with finer ones when that node is refined; its upper node `from` is the coarser cell it was merged into, and
-// creates it when refined. Node 0, the source, is always refined; the last node, the sink, never: patches that end
+// Nodes are cells that were simplified; arcs are patches, pieces of mesh. A patch was left by its lower node `to` and
+// is replaced with finer ones when that node is refined; its upper node `from` is the coarser cell it was merged into,
+// and creates it when refined. Node 0, the source, is always refined; the last node, the sink, never: patches that end
 // there are the finest. A set of refined nodes that holds with each node all those above it is legal; its cut, the
 // patches from refined nodes to others, covers space-time once and is closed where the input is. Arcs go from smaller
 // node numbers to larger ones; errors do not grow along them and bounds lie within each other, so that "refined where
 // error(bounds) > limit" is legal for every measure of error that grows with both.
 //
-// A patch is a mesh of its own, with u16 local indices. A vertex on the border of patches is stored in each of them with
-// the same bits, on every level; such vertices come first. A geometry page's bytes: PatchHeader (64 B) | vertices
+// A patch is a mesh of its own, with u16 local indices. A vertex on the border of patches is stored in each of them
+// with the same bits, on every level; such vertices come first. A geometry page's bytes: PatchHeader (64 B) | vertices
 // Vec4f[vertices] | tets u16[4][tets], each part padded with zeros to 64 bytes. entry.counts = {vertices, tets, from,
 // to}; patches stand in the order of their upper nodes. Column pages follow as in a hypermesh. Sections: AHDR,
 // TIME, NODE, COLS (optional), PAGE/PTAB. docs/formats/patch_dag.md.
@@ -72,17 +72,17 @@ struct NodeEntry {
   std::uint32_t flags;        // @20 kStuck
   float error_estimated;      // @24 world units: of the patches that end here, to the finest mesh; the sink's is 0
   float error_measured;       // @28 the same by a pass of its own, or -1 in every node but the sink
-  Bounds4f bounds;            // @32 holds its patches, those that end here, and the bounds of all nodes below; the sink's
-                              //     are all zero
+  Bounds4f bounds;  // @32 holds its patches, those that end here, and the bounds of all nodes below; the sink's
+                    //     are all zero
 };
 static_assert(sizeof(NodeEntry) == 64 && offsetof(NodeEntry, bounds) == 32);
 
 struct PatchHeader {
-  std::uint64_t vertices;     // @0  1 .. kMostVertices
-  std::uint64_t tets;         // @8  at least 1
-  std::uint64_t shared;       // @16 vertices 0 .. shared - 1 may stand in other patches too; the others in none
-  std::uint64_t from;         // @24 upper node
-  std::uint64_t to;           // @32 lower node
+  std::uint64_t vertices;  // @0  1 .. kMostVertices
+  std::uint64_t tets;      // @8  at least 1
+  std::uint64_t shared;    // @16 vertices 0 .. shared - 1 may stand in other patches of a cut too; the others in none
+  std::uint64_t from;      // @24 upper node
+  std::uint64_t to;        // @32 lower node
   std::uint64_t reserved[3];  // @40 zero
 };
 static_assert(sizeof(PatchHeader) == 64);
@@ -157,8 +157,8 @@ struct Patch {
 class Writer {
  public:
   // header: flags, index_to_world, domain, isovalue, time_scale. nodes: level, flags, errors and bounds; which patches
-  // are theirs is filled in, as are the header's counts. No nodes but source and sink: a mesh without tetrahedra, or one
-  // that is its own coarsest form.
+  // are theirs is filled in, as are the header's counts. No nodes but source and sink: a mesh without tetrahedra, or
+  // one that is its own coarsest form.
   static Result<Writer> create(const std::string& path, const Header& header, std::span<const double> times,
                                std::span<const NodeEntry> nodes, std::span<const Column> columns, paged::Codec codec,
                                bool force);

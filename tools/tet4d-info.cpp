@@ -142,11 +142,14 @@ int main(int argc, char** argv) {
       .example("tet4d-info --json drop.t4h", "the same for scripts")
       .example("tet4d-info --validate drop.t4h && echo sound",
                "checksums, indices, every inner triangle in two tetrahedra")
-      .positional("FILE", "a grid4 (.t4g), hypermesh (.t4h), dynamic triangles (.t4d), surface sequence (.t4q) or patch DAG (.t4p) file",
+      .positional("FILE",
+                  "a grid4 (.t4g), hypermesh (.t4h), dynamic triangles (.t4d), surface sequence (.t4q) or patch DAG "
+                  "(.t4p) file",
                   &options.file)
       .flag("--json", "print JSON", &options.json)
       .flag("--validate",
-            "prove structure, checksums, indices, of a hypermesh faces and orientation, of a patch DAG that every cut is closed; "
+            "prove structure, checksums, indices, of a hypermesh faces and orientation, of a patch DAG that every cut "
+            "is closed; "
             "exit 5 on faults",
             &options.validate)
       .flag("--links", "validate, and check that every vertex and edge link is that of a manifold", &options.links)

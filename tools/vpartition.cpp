@@ -49,10 +49,11 @@ void tell(cli::Session& session, const hypermesh::File& mesh, const vpartition::
     const vpartition::LevelReport& level = dag.levels[i];
     char line[200];
     std::snprintf(line, sizeof line,
-                  "level %zu: %llu tets -> %llu in %llu cells (%llu stuck), %.1f %% of vertices locked, error %.3g", i + 1,
-                  static_cast<unsigned long long>(level.tets_in), static_cast<unsigned long long>(level.tets_out),
-                  static_cast<unsigned long long>(level.cells), static_cast<unsigned long long>(level.stuck),
-                  percent(level.locked, level.vertices), level.error_world);
+                  "level %zu: %llu tets -> %llu in %llu cells (%llu stuck), %.1f %% of vertices locked, error %.3g",
+                  i + 1, static_cast<unsigned long long>(level.tets_in),
+                  static_cast<unsigned long long>(level.tets_out), static_cast<unsigned long long>(level.cells),
+                  static_cast<unsigned long long>(level.stuck), percent(level.locked, level.vertices),
+                  level.error_world);
     session.detail(line);
     cells += level.cells, stuck += level.stuck, locked += level.locked, vertices += level.vertices;
     orphans += level.orphans;
@@ -78,13 +79,14 @@ void tell(cli::Session& session, const hypermesh::File& mesh, const vpartition::
   stats.count("root_patches", dag.root_patches);
   if (!dag.nodes.empty()) stats.error("estimated_world", dag.nodes.front().error_estimated);
   char line[240];
-  std::snprintf(line, sizeof line,
-                "%llu tets -> %zu levels, %zu nodes (%llu without error left out), %zu patches, %llu tets; root of %llu tets "
-                "in %llu patches; %.1f %% of the cells' vertices locked",
-                static_cast<unsigned long long>(mesh.header().tets), dag.levels.size(), dag.nodes.size(),
-                static_cast<unsigned long long>(dag.pruned_nodes), dag.patches.size(),
-                static_cast<unsigned long long>(tets), static_cast<unsigned long long>(dag.root_tets),
-                static_cast<unsigned long long>(dag.root_patches), percent(locked, vertices));
+  std::snprintf(
+      line, sizeof line,
+      "%llu tets -> %zu levels, %zu nodes (%llu without error left out), %zu patches, %llu tets; root of %llu tets "
+      "in %llu patches; %.1f %% of the cells' vertices locked",
+      static_cast<unsigned long long>(mesh.header().tets), dag.levels.size(), dag.nodes.size(),
+      static_cast<unsigned long long>(dag.pruned_nodes), dag.patches.size(), static_cast<unsigned long long>(tets),
+      static_cast<unsigned long long>(dag.root_tets), static_cast<unsigned long long>(dag.root_patches),
+      percent(locked, vertices));
   session.note(line);
   if (dag.root_patches > 1)
     session.warn("the coarsest cut has " + std::to_string(dag.root_patches) +
@@ -119,16 +121,20 @@ int build(cli::Session& session, Options& options) {
 
 int main(int argc, char** argv) {
   Options o;
-  cli::Command command("vpartition", "Builds a hypermesh at every resolution: patches whose every choice fits without cracks.");
+  cli::Command command("vpartition",
+                       "Builds a hypermesh at every resolution: patches whose every choice fits without cracks.");
   command.example("vpartition dam.t4h -o dam.t4p", "levels from the whole mesh down to one patch")
-      .example("vpartition dam.t4h -o dam.t4p --time-scale 0.5", "a frame counts as half a cell where distances are measured")
+      .example("vpartition dam.t4h -o dam.t4p --time-scale 0.5",
+               "a frame counts as half a cell where distances are measured")
       .example("vpartition dam.t4h -o dam.t4p --partition kd -v", "cells by planes, and what each level came to")
       .positional("FILE", "hypermesh (.t4h)", &o.input)
-      .option("--partition", "WHICH", "cells: voronoi, relaxed, with a norm of its own each; kd, by planes across the longest extent",
+      .option("--partition", "WHICH",
+              "cells: voronoi, relaxed, with a norm of its own each; kd, by planes across the longest extent",
               cli::Choice{&o.partition, {"voronoi", "kd"}})
       .option("--cell-tets", "N", "tetrahedra of a cell that is simplified, on average", &o.build.cell_tets)
       .option("--patch-tets", "N", "tetrahedra of a patch, at most; up to 16383", &o.build.patch_tets)
-      .option("--time-scale", "S", "cells that a frame counts as, for cells and for players; stored", &o.build.time_scale)
+      .option("--time-scale", "S", "cells that a frame counts as, for cells and for players; stored",
+              &o.build.time_scale)
       .option("--page-codec", "CODEC", "how pages are stored", cli::Choice{&o.codec, {"raw", "zstd"}})
       .common({cli::kOutputRequired, cli::kThreads, cli::kMemory, cli::kForce, cli::kDryRun, cli::kSeed, cli::kStats,
                cli::kDepfile});

@@ -63,12 +63,14 @@ class Checker {
 
   PatchDagCheck run() {
     progress_.phase("patches", file_.nodes().size());
-    const bool is_whole = (file_.header().flags & (patch_dag::kOnGrid | patch_dag::kInnerBoundary)) == patch_dag::kOnGrid;
+    const bool is_whole =
+        (file_.header().flags & (patch_dag::kOnGrid | patch_dag::kInnerBoundary)) == patch_dag::kOnGrid;
     if (file_.patches() != 0) {
       const Chain boundary = boundaryOf(patchesFrom(0), {});
       check_.open_faces = boundary.size();
       if (is_whole && !boundary.empty())
-        say("the coarsest cut is open away from the domain's walls, in " + std::to_string(boundary.size()) + " triangles");
+        say("the coarsest cut is open away from the domain's walls, in " + std::to_string(boundary.size()) +
+            " triangles");
     }
     std::map<std::size_t, Chain> changes;  // by node
     for (std::size_t node = 1; node + 1 < file_.nodes().size(); ++node) {
@@ -86,7 +88,8 @@ class Checker {
         say("node " + std::to_string(node) + ": refining it tears the mesh, in " + std::to_string(change.size()) +
             " triangles");
     }
-    if (check_.cracked_nodes > kFaultsInWords) say(std::to_string(check_.cracked_nodes) + " nodes tear the mesh in all");
+    if (check_.cracked_nodes > kFaultsInWords)
+      say(std::to_string(check_.cracked_nodes) + " nodes tear the mesh in all");
     return std::move(check_);
   }
 

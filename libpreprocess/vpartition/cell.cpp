@@ -12,7 +12,7 @@ class CellProgress final : public outofcore::Progress {
   void step(std::uint64_t /*done*/) override { outofcore::Progress::step(0); }
 };
 
-constexpr double kShare = 0.5;        // of a level to the one below it
+constexpr double kShare = 0.5;         // of a level to the one below it
 constexpr double kLeastOfFree = 0.35;  // of what is not locked, so that it does not pay for what is
 
 CellMesh packed(const qslim4d::SlimMesh& mesh, const std::vector<std::uint64_t>& ids) {
@@ -37,9 +37,7 @@ CellMesh packed(const qslim4d::SlimMesh& mesh, const std::vector<std::uint64_t>&
 
 }  // namespace
 
-double wantedShare(double locked_share) {
-  return std::max(kShare, locked_share + (1 - locked_share) * kLeastOfFree);
-}
+double wantedShare(double locked_share) { return std::max(kShare, locked_share + (1 - locked_share) * kLeastOfFree); }
 
 CellResult simplifyCell(CellMesh cell, const CellRules& rules, outofcore::Executor& executor) {
   CellResult result;
@@ -47,13 +45,13 @@ CellResult simplifyCell(CellMesh cell, const CellRules& rules, outofcore::Execut
   result.vertices_in = cell.ids.size();
   result.locked = static_cast<std::uint64_t>(
       std::count_if(cell.flags.begin(), cell.flags.end(), [](auto flags) { return (flags & qslim4d::kLocked) != 0; }));
-  const double locked_share = static_cast<double>(result.locked) / static_cast<double>(std::max<std::size_t>(1, cell.ids.size()));
+  const double locked_share =
+      static_cast<double>(result.locked) / static_cast<double>(std::max<std::size_t>(1, cell.ids.size()));
   qslim4d::Options options;
   options.target_tets = static_cast<std::uint64_t>(wantedShare(locked_share) * static_cast<double>(cell.tets.size()));
   const qslim4d::CellContext context{cell.flags, {}, cell.ids, rules.speed};
-  qslim4d::SlimMesh mesh =
-      qslim4d::makeSlimMesh(std::move(cell.positions), std::move(cell.tets), rules.domain, rules.map,
-                            qslim4d::Metric::kSlice, {false, &executor, &context});
+  qslim4d::SlimMesh mesh = qslim4d::makeSlimMesh(std::move(cell.positions), std::move(cell.tets), rules.domain,
+                                                 rules.map, qslim4d::Metric::kSlice, {false, &executor, &context});
   CellProgress progress;
   const qslim4d::Stats stats = qslim4d::simplify(mesh, options, executor, progress);
   result.error_world = stats.largest_error;

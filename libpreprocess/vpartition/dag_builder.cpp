@@ -77,8 +77,7 @@ class Builder {
       if (mesh_.tets.size() <= options_.patch_tets) break;
       const std::uint32_t cells = addLevel(level);
       const LevelReport& report = dag_.levels.back();
-      const bool is_stuck =
-          static_cast<double>(report.tets_out) > kStuckShare * static_cast<double>(report.tets_in);
+      const bool is_stuck = static_cast<double>(report.tets_out) > kStuckShare * static_cast<double>(report.tets_in);
       if (level == 1 && is_stuck) refuseOneLevel(report);
       stuck_levels = is_stuck ? stuck_levels + 1 : 0;
       // Nothing is locked in one cell: what it could not take away, no later one can.
@@ -422,13 +421,15 @@ void checkOptions(const Options& options) {
 
 std::uint64_t boundMemory(const hypermesh::File& file, const Options& options, std::size_t threads) {
   const hypermesh::MeshHeader& header = file.header();
-  const double per_tet = static_cast<double>(header.vertices) / static_cast<double>(std::max<std::uint64_t>(1, header.tets));
+  const double per_tet =
+      static_cast<double>(header.vertices) / static_cast<double>(std::max<std::uint64_t>(1, header.tets));
   // A cell may be heavier than the mean, and half its vertices be others' too.
   const std::uint64_t cell = std::min(header.tets, 2 * options.cell_tets);
   const auto cell_vertices = static_cast<std::uint64_t>(2 * per_tet * static_cast<double>(cell)) + 4;
-  const std::uint64_t cells = std::min<std::uint64_t>(threads, header.tets / std::max<std::uint64_t>(1, options.cell_tets) + 1);
-  const std::uint64_t mesh = header.vertices * (sizeof(Vec4f) + 3 * 4 + 8) +
-                             header.tets * (2 * sizeof(Tet) + sizeof(Place) + 16 + 28 + 8);
+  const std::uint64_t cells =
+      std::min<std::uint64_t>(threads, header.tets / std::max<std::uint64_t>(1, options.cell_tets) + 1);
+  const std::uint64_t mesh =
+      header.vertices * (sizeof(Vec4f) + 3 * 4 + 8) + header.tets * (2 * sizeof(Tet) + sizeof(Place) + 16 + 28 + 8);
   // Levels sum to about two and a half times the input, and vertices stand in several patches.
   const std::uint64_t patches = header.tets * 5 / 2 * (sizeof(patch_dag::LocalTet) + sizeof(Vec4f) / 2);
   return mesh + patches + cells * (qslim4d::simplifyBytes(cell_vertices, cell) + cell * 40);

@@ -37,10 +37,10 @@ struct LevelReport {
 };
 
 struct Dag {
-  std::vector<patch_dag::NodeEntry> nodes;  // as a file has them, but for their patches
-  std::vector<StoredPatch> patches;         // by upper node; nodes by their place in `nodes`
-  std::vector<LevelReport> levels;          // the finest first
-  std::uint64_t pruned_nodes = 0;           // without error: what lies below them is left out
+  std::vector<patch_dag::NodeEntry> nodes;        // as a file has them, but for their patches
+  std::vector<StoredPatch> patches;               // by upper node; nodes by their place in `nodes`
+  std::vector<LevelReport> levels;                // the finest first
+  std::uint64_t pruned_nodes = 0;                 // without error: what lies below them is left out
   std::uint64_t root_tets = 0, root_patches = 0;  // of the coarsest cut
 };
 

@@ -20,6 +20,11 @@ class Sets {
     a = of(a), b = of(b);
     if (a != b) up_[std::max(a, b)] = std::min(a, b);
   }
+  // The name of each member's set.
+  std::vector<std::uint32_t> all() {
+    for (std::uint32_t t = 0; t < up_.size(); ++t) up_[t] = of(t);
+    return std::move(up_);
+  }
 
  private:
   std::vector<std::uint32_t> up_;
@@ -72,25 +77,29 @@ Sets partsOf(const Stars& stars, std::size_t tets) {
 }
 
 // One round; returns how many pieces went.
-std::uint64_t mergeRound(std::span<const hypermesh::Tet> tets, const Stars& stars, Sets& parts,
-                         std::span<std::uint32_t> owners) {
-  Sets pieces = piecesOf(stars, owners);
-  std::map<std::uint32_t, std::uint64_t> sizes;  // by piece
-  for (std::uint32_t t = 0; t < tets.size(); ++t) ++sizes[pieces.of(t)];
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> kept;  // by part and owner: the largest piece
-  for (const auto& [piece, size] : sizes) {
-    const auto [at, is_new] = kept.try_emplace({parts.of(piece), owners[piece]}, piece);
-    if (!is_new && size > sizes[at->second]) at->second = piece;
+std::uint64_t mergeRound(std::span<const hypermesh::Tet> tets, const Stars& stars,
+                         const std::vector<std::uint32_t>& parts, std::span<std::uint32_t> owners) {
+  const std::vector<std::uint32_t> pieces = piecesOf(stars, owners).all();
+  std::vector<std::uint32_t> sizes(tets.size());  // by piece
+  for (const std::uint32_t piece : pieces) ++sizes[piece];
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> largest;  // piece, by part and owner
+  std::size_t count = 0;
+  for (std::uint32_t piece = 0; piece < sizes.size(); ++piece) {
+    if (sizes[piece] == 0) continue;
+    ++count;
+    const auto [at, is_new] = largest.try_emplace({parts[piece], owners[piece]}, piece);
+    if (!is_new && sizes[piece] > sizes[at->second]) at->second = piece;
   }
-  if (kept.size() == sizes.size()) return 0;
-  const auto isKept = [&](std::uint32_t t) { return kept[{parts.of(t), owners[t]}] == pieces.of(t); };
+  if (largest.size() == count) return 0;
+  std::vector<bool> kept(tets.size());  // by piece
+  for (const auto& [key, piece] : largest) kept[piece] = true;
   std::map<std::uint32_t, std::map<std::uint32_t, std::uint64_t>> contacts;  // by orphan, by owner beside it
   for (std::uint32_t t = 0; t < tets.size(); ++t) {
-    if (isKept(t)) continue;
-    auto& contact = contacts[pieces.of(t)];
+    if (kept[pieces[t]]) continue;
+    auto& contact = contacts[pieces[t]];
     for (const std::uint32_t v : tets[t])
       for (const std::uint32_t other : stars[v])
-        if (pieces.of(other) != pieces.of(t) && isKept(other)) ++contact[owners[other]];
+        if (kept[pieces[other]]) ++contact[owners[other]];
   }
   std::map<std::uint32_t, std::uint32_t> adopters;  // by orphan
   for (const auto& [orphan, contact] : contacts) {
@@ -100,7 +109,7 @@ std::uint64_t mergeRound(std::span<const hypermesh::Tet> tets, const Stars& star
     if (most != contact.end()) adopters[orphan] = most->first;  // one among orphans waits for the next round
   }
   for (std::uint32_t t = 0; t < tets.size(); ++t)
-    if (const auto at = adopters.find(pieces.of(t)); at != adopters.end()) owners[t] = at->second;
+    if (const auto at = adopters.find(pieces[t]); at != adopters.end()) owners[t] = at->second;
   return adopters.size();
 }
 
@@ -110,9 +119,10 @@ std::uint64_t mergeOrphans(std::span<const hypermesh::Tet> tets, std::size_t ver
                            std::span<std::uint32_t> owners) {
   if (tets.empty() || std::all_of(owners.begin(), owners.end(), [&](auto o) { return o == owners[0]; })) return 0;
   const Stars stars(tets, vertices);
-  Sets parts = partsOf(stars, tets.size());
+  const std::vector<std::uint32_t> parts = partsOf(stars, tets.size()).all();
   std::uint64_t merged = 0;
-  // Every part has a kept piece, so while there are orphans one of them touches a kept one: each round has fewer pieces.
+  // Every part has a kept piece, so while there are orphans one of them touches a kept one: each round has fewer
+  // pieces.
   while (const std::uint64_t round = mergeRound(tets, stars, parts, owners)) merged += round;
   return merged;
 }

@@ -15,7 +15,6 @@ namespace tet4d::vpartition {
 // Changes `owners` (of the tetrahedra, below 2^32 - 1) so that what a cell has of each connected part of the mesh hangs
 // together by vertices: all but the largest piece, of equal ones the first, go to the cell beside them that shares most
 // of their corners. Returns how many pieces went. O(tets) a round, few rounds; 28 bytes a tetrahedron, 4 a vertex.
-std::uint64_t mergeOrphans(std::span<const hypermesh::Tet> tets, std::size_t vertices,
-                           std::span<std::uint32_t> owners);
+std::uint64_t mergeOrphans(std::span<const hypermesh::Tet> tets, std::size_t vertices, std::span<std::uint32_t> owners);
 
 }  // namespace tet4d::vpartition

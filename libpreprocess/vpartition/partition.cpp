@@ -65,8 +65,7 @@ class KdPartition final : public Partition {
       }
     }
     std::array<std::uint32_t, 4> axes{0, 1, 2, 3};
-    std::stable_sort(axes.begin(), axes.end(),
-                     [&](auto a, auto b) { return high[a] - low[a] > high[b] - low[b]; });
+    std::stable_sort(axes.begin(), axes.end(), [&](auto a, auto b) { return high[a] - low[a] > high[b] - low[b]; });
     return axes;
   }
 

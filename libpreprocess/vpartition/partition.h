@@ -12,10 +12,10 @@ namespace tet4d::vpartition {
 
 // A tetrahedron that stands for others where a partition is made.
 struct Sample {
-  Place at;               // of the tetrahedron, see Place
-  double weight = 1;      // tetrahedra it stands for
-  double space2 = 0;      // sum of its edges' squared lengths in space, steps
-  double time2 = 0;       // the same along time
+  Place at;           // of the tetrahedron, see Place
+  double weight = 1;  // tetrahedra it stands for
+  double space2 = 0;  // sum of its edges' squared lengths in space, steps
+  double time2 = 0;   // the same along time
 };
 
 class Partition {

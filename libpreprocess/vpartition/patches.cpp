@@ -41,9 +41,8 @@ void halve(std::span<std::uint32_t> order, std::span<const Place> places, std::u
 
 std::vector<PatchRange> cutPatches(std::span<std::uint32_t> order, std::span<const std::uint32_t> left_by,
                                    std::span<const Place> places, std::uint64_t most) {
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::pair(left_by[a], a) < std::pair(left_by[b], b);
-  });
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return std::pair(left_by[a], a) < std::pair(left_by[b], b); });
   std::vector<PatchRange> parts;
   for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
     const std::uint32_t lower = left_by[order[begin]];

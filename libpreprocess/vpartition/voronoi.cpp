@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kLeafSites = 4;
 constexpr int kRelaxations = 8, kBalances = 24;
-constexpr double kHeavy = 1.5;           // a cell above this times the mean weight takes a site from the lightest
+constexpr double kHeavy = 1.5;          // a cell above this times the mean weight takes a site from the lightest
 constexpr std::size_t kNeighbours = 6;  // that smooth a site's norm
 
 std::uint64_t square(std::int64_t d) { return static_cast<std::uint64_t>(d * d); }

@@ -1,7 +1,7 @@
 // Voronoi cells whose sites each have a norm of their own, and their relaxation. Private to vpartition.
 //
-// Lloyd 1982; Ponchio & Hormann 2008, sec. 6.3 and 6.4: where a surface moves little its tetrahedra are long in time, and
-// so must be the cells there, or they are little but border.
+// Lloyd 1982; Ponchio & Hormann 2008, sec. 6.3 and 6.4: where a surface moves little its tetrahedra are long in time,
+// and so must be the cells there, or they are little but border.
 #pragma once
 
 #include <cstdint>
@@ -33,10 +33,10 @@ class Voronoi final : public Partition {
 
  private:
   struct Node {
-    Place low, high;               // box of its sites
-    std::uint64_t time;            // the least of theirs
-    std::uint32_t first, count;    // in order_
-    std::uint32_t children;        // number of the first of two; 0: a leaf
+    Place low, high;             // box of its sites
+    std::uint64_t time;          // the least of theirs
+    std::uint32_t first, count;  // in order_
+    std::uint32_t children;      // number of the first of two; 0: a leaf
   };
   void build(std::uint32_t node);
   std::uint64_t bound(const Node& node, const Place& at) const;

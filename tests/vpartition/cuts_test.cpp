@@ -123,21 +123,21 @@ TEST_P(Cuts, VerticesThatAreNotSharedStandInNoOtherPatchOfACut) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Scenes, Cuts,
-    ::testing::Values(Scene{"ball", {30, 28, 28}, 9, movingBall, Kind::kVoronoi, true},
-                      Scene{"blobs", {30, 26, 28}, 10, blobs, Kind::kVoronoi, true},
-                      Scene{"blobs_kd", {30, 26, 28}, 10, blobs, Kind::kKd, true},
-                      // Through all walls of space, so that cells end in walls.
-                      Scene{"waves",
-                            {22, 22, 18},
-                            10,
-                            [](double x, double y, double z, double t) {
-                              return z - 8.7 - 2 * std::sin(0.4 * x + 0.3 * t) * std::cos(0.35 * y);
-                            },
-                            Kind::kVoronoi,
-                            false}),
-    [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Scenes, Cuts,
+                         ::testing::Values(Scene{"ball", {30, 28, 28}, 9, movingBall, Kind::kVoronoi, true},
+                                           Scene{"blobs", {30, 26, 28}, 10, blobs, Kind::kVoronoi, true},
+                                           Scene{"blobs_kd", {30, 26, 28}, 10, blobs, Kind::kKd, true},
+                                           // Through all walls of space, so that cells end in walls.
+                                           Scene{"waves",
+                                                 {22, 22, 18},
+                                                 10,
+                                                 [](double x, double y, double z, double t) {
+                                                   return z - 8.7 -
+                                                          2 * std::sin(0.4 * x + 0.3 * t) * std::cos(0.35 * y);
+                                                 },
+                                                 Kind::kVoronoi,
+                                                 false}),
+                         [](const auto& info) { return std::string(info.param.name); });
 
 // The check must find what it is there for: a vertex that is moved in one patch by the least that can be.
 TEST(CheckPatchDag, ATornBorderIsFoundAndTheNodeNamed) {
@@ -157,8 +157,8 @@ TEST(CheckPatchDag, ATornBorderIsFoundAndTheNodeNamed) {
   header.time_scale = 1;
   const auto write = [&] {
     outofcore::Progress silent;
-    auto writer = unwrap(
-        patch_dag::Writer::create(path, header, file.times(), run.dag.nodes, {}, paged::Codec::kRaw, true));
+    auto writer =
+        unwrap(patch_dag::Writer::create(path, header, file.times(), run.dag.nodes, {}, paged::Codec::kRaw, true));
     writeDag(run.dag, writer, silent);
     unwrap(writer.close("{}"));
   };

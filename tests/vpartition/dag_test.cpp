@@ -102,15 +102,15 @@ TEST(Dag, BytesDoNotDependOnThreads) {
   }
   Options other = small();
   other.seed = 1;
-  EXPECT_FALSE(buildTo(path, mesh, other).bytes == buildTo(path, mesh, small()).bytes) << "the seed says where cells are";
+  EXPECT_FALSE(buildTo(path, mesh, other).bytes == buildTo(path, mesh, small()).bytes)
+      << "the seed says where cells are";
 }
 
 // Where the time scale is small cells are long in time, where it is large they are short.
 TEST(Dag, TheTimeScaleShapesTheCells) {
   const std::string mesh = marching::temporaryPath("scale.t4h"), path = marching::temporaryPath("scale.t4p");
-  extractScene(mesh, {26, 26, 26}, 20, [](double x, double y, double z, double t) {
-    return ballAt(x, y, z, 12 + 0.1 * t, 12.5, 12, 7);
-  });
+  extractScene(mesh, {26, 26, 26}, 20,
+               [](double x, double y, double z, double t) { return ballAt(x, y, z, 12 + 0.1 * t, 12.5, 12, 7); });
   const auto meanDuration = [&](double scale) {
     Options options = small(Kind::kKd);  // without norms of its own, so that the scale alone decides
     options.time_scale = scale;

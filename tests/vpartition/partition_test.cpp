@@ -102,8 +102,9 @@ TEST(Partition, LevelsAndSeedsHaveOtherBorders) {
     EXPECT_EQ(together(*one, *again), 12U);
     EXPECT_GT(together(*one, *two), 24U);
   }
-  EXPECT_GT(together(*makePartition(Kind::kVoronoi, samples, 12, 1, 7), *makePartition(Kind::kVoronoi, samples, 12, 1, 8)),
-            24U);
+  EXPECT_GT(
+      together(*makePartition(Kind::kVoronoi, samples, 12, 1, 7), *makePartition(Kind::kVoronoi, samples, 12, 1, 8)),
+      24U);
 }
 
 // Tetrahedra that are long in time make cells that are long in time: norms that count time less.
@@ -114,7 +115,7 @@ TEST(Partition, NormsFollowTheTetrahedra) {
     for (const Site& site : sites) sum += static_cast<double>(site.time) / kEven / 32;
     return sum;
   };
-  EXPECT_NEAR(timeOf(2, 1), 1, 0.01);        // as long in time as along each direction of space
+  EXPECT_NEAR(timeOf(2, 1), 1, 0.01);          // as long in time as along each direction of space
   EXPECT_NEAR(timeOf(2, 16), 1.0 / 16, 0.01);  // four times as long
   EXPECT_NEAR(timeOf(32, 1), 16, 0.1);
   EXPECT_NEAR(timeOf(2, 1e9), 1.0 / 64, 0.01) << "clamped";

@@ -41,7 +41,8 @@ TEST(CutPatches, EveryTetrahedronIsInOnePatchOfItsNode) {
 }
 
 TEST(MakePatch, SharedVerticesComeFirstAndTetrahedraKeepTheirCorners) {
-  const std::vector<Vec4f> positions{{0, 0, 0, 0}, {1, 0, 0, 1}, {0, 1, 0, 2}, {0, 0, 1, 3}, {1, 1, 1, 4}, {-0.0f, 2, 2, 5}};
+  const std::vector<Vec4f> positions{{0, 0, 0, 0}, {1, 0, 0, 1}, {0, 1, 0, 2},
+                                     {0, 0, 1, 3}, {1, 1, 1, 4}, {-0.0f, 2, 2, 5}};
   const std::vector<Tet> tets{{0, 1, 2, 3}, {3, 2, 1, 4}, {1, 4, 5, 2}};
   std::vector<std::uint32_t> users(positions.size(), kUnused);
   noteUser(users, tets[0], 0), noteUser(users, tets[1], 0), noteUser(users, tets[2], 1);

@@ -42,16 +42,19 @@ Options small() {
 }
 
 TEST(DagStiff, AllMotionInOneCorner) {
-  const Outcome outcome = buildScene({40, 24, 24}, 12, [](double x, double y, double z, double t) {
-    return std::max(ballAt(x, y, z, 9, 12, 12, 7.3), ballAt(x, y, z, 33 - 0.2 * t, 12 + std::sin(t), 12, 4.2));
-  }, small());
+  const Outcome outcome = buildScene(
+      {40, 24, 24}, 12,
+      [](double x, double y, double z, double t) {
+        return std::max(ballAt(x, y, z, 9, 12, 12, 7.3), ballAt(x, y, z, 33 - 0.2 * t, 12 + std::sin(t), 12, 4.2));
+      },
+      small());
   EXPECT_EQ(outcome.run.dag.root_patches, 1U);
 }
 
 TEST(DagStiff, TwoFrames) {
-  const Outcome outcome = buildScene({30, 30, 30}, 2, [](double x, double y, double z, double t) {
-    return ballAt(x, y, z, 14.5 + t, 14, 14, 11);
-  }, small());
+  const Outcome outcome = buildScene(
+      {30, 30, 30}, 2, [](double x, double y, double z, double t) { return ballAt(x, y, z, 14.5 + t, 14, 14, 11); },
+      small());
   EXPECT_EQ(outcome.run.dag.root_patches, 1U);
 }
 
@@ -60,9 +63,9 @@ TEST(DagStiff, TimeScalesApart) {
   for (const double scale : {1e-6, 1e-2, 1e2, 1e6}) {
     Options options = small();
     options.time_scale = scale;
-    const Outcome outcome = buildScene({22, 22, 22}, 10, [](double x, double y, double z, double t) {
-      return ballAt(x, y, z, 10 + 0.2 * t, 11, 11, 6.3);
-    }, options);
+    const Outcome outcome = buildScene(
+        {22, 22, 22}, 10,
+        [](double x, double y, double z, double t) { return ballAt(x, y, z, 10 + 0.2 * t, 11, 11, 6.3); }, options);
     EXPECT_EQ(outcome.run.dag.root_patches, 1U) << scale;
   }
 }
@@ -89,9 +92,8 @@ TEST(DagStiff, SpecksThatCannotBecomeFewer) {
 // Cells so small that nearly all of their vertices are locked: one resolution is no DAG.
 TEST(DagStiff, AGraphOfOneLevelIsRefused) {
   const std::string mesh = marching::temporaryPath("locked.t4h"), path = marching::temporaryPath("locked.t4p");
-  extractScene(mesh, {24, 24, 24}, 6, [](double x, double y, double z, double t) {
-    return ballAt(x, y, z, 11 + 0.3 * t, 12, 12, 8.3);
-  });
+  extractScene(mesh, {24, 24, 24}, 6,
+               [](double x, double y, double z, double t) { return ballAt(x, y, z, 11 + 0.3 * t, 12, 12, 8.3); });
   Options options;
   options.cell_tets = options.patch_tets = 20;
   try {
@@ -107,19 +109,23 @@ TEST(DagStiff, AGraphOfOneLevelIsRefused) {
 
 // Cells that were masked leave a free boundary, which is simplified too: cracks are told from it.
 TEST(DagStiff, AnInnerBoundary) {
-  const Outcome outcome = buildScene({30, 28, 28}, 9, [](double x, double y, double z, double t) {
-    if (x > 12 && x < 17 && y > 15 && t > 2 && t < 6) return std::nan("");
-    return movingBall(x, y, z, t);
-  }, small());
+  const Outcome outcome = buildScene(
+      {30, 28, 28}, 9,
+      [](double x, double y, double z, double t) {
+        if (x > 12 && x < 17 && y > 15 && t > 2 && t < 6) return std::nan("");
+        return movingBall(x, y, z, t);
+      },
+      small());
   EXPECT_GT(outcome.check.open_faces, 0U);
   EXPECT_GE(outcome.run.dag.levels.size(), 3U);
 }
 
 TEST(DagStiff, FarFromTheOriginInFlatCells) {
   const AffineMap map{{1e7, -1e7, 3e8}, {{{0.5, 0, 0}, {0, 20, 0}, {0, 0, -2}}}};
-  const Outcome outcome = buildScene({26, 26, 26}, 8, [](double x, double y, double z, double t) {
-    return ballAt(x, y, z, 12 + 0.2 * t, 12.5, 12, 7.2);
-  }, small(), map);
+  const Outcome outcome = buildScene(
+      {26, 26, 26}, 8,
+      [](double x, double y, double z, double t) { return ballAt(x, y, z, 12 + 0.2 * t, 12.5, 12, 7.2); }, small(),
+      map);
   EXPECT_EQ(outcome.run.dag.root_patches, 1U);
 }
 

@@ -182,8 +182,9 @@ Result<AnyFile> open(const std::string& path) {
     default:
       return Fault{
           FaultCode::kBadInput, path, "header",
-          fmt::format("payload '{}' is unknown; known are grid4, hypermesh, dynamic_triangles, surface_sequence and patch_dag",
-                      container::fourCcText(header.value().payload)),
+          fmt::format(
+              "payload '{}' is unknown; known are grid4, hypermesh, dynamic_triangles, surface_sequence and patch_dag",
+              container::fourCcText(header.value().payload)),
           "use a version of tet4d that knows it"};
   }
 }

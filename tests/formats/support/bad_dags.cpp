@@ -18,12 +18,9 @@ constexpr std::uint64_t kVertices = 64, kTets = 64 + 8 * 16;
 // dag.t4p: page 0 from node 0 to 1, pages 1 and 2 from node 1 to node 2, the sink.
 std::vector<BadFile> badHeaders() {
   const auto header = [](std::string name, std::string what, auto forge, std::string place = "section AHDR") {
-    return BadFile{"dag_header_" + name + ".t4p",
-                   "dag.t4p",
-                   true,
-                   std::move(place),
-                   std::move(what),
-                   [=](Image& i) { forge(i.item<Header>(patch_dag::kHeader)); }};
+    return BadFile{"dag_header_" + name + ".t4p", "dag.t4p", true, std::move(place), std::move(what), [=](Image& i) {
+                     forge(i.item<Header>(patch_dag::kHeader));
+                   }};
   };
   std::vector<BadFile> all{
       header("reserved", "reserved", [](Header& h) { h.reserved[2] = 1; }),
@@ -48,13 +45,12 @@ std::vector<BadFile> badHeaders() {
   };
   all.push_back({"dag_header_box.t4p", "dag.t4p", false, "section AHDR", "box of the vertices",
                  [](Image& i) { i.item<Header>(patch_dag::kHeader).bounds.max.x += 1; }});
-  all.push_back({"dag_column_same_name.t4p", "dag_columns.t4p", true, "section COLS", "same name", [](Image& i) {
-                   std::strncpy(i.item<ColumnEntry>(patch_dag::kColumns, 1).name, "pressure", 56);
-                 }});
+  all.push_back({"dag_column_same_name.t4p", "dag_columns.t4p", true, "section COLS", "same name",
+                 [](Image& i) { std::strncpy(i.item<ColumnEntry>(patch_dag::kColumns, 1).name, "pressure", 56); }});
   all.push_back({"dag_column_size.t4p", "dag_columns.t4p", true, "section PTAB", "size",
                  [](Image& i) { i.item<ColumnEntry>(patch_dag::kColumns, 1).components = 1; }});
-  all.push_back({"dag_column_kind.t4p", "dag_columns.t4p", true, "section PTAB", "kind",
-                 [](Image& i) { i.page(2).kind = 1; }});
+  all.push_back(
+      {"dag_column_kind.t4p", "dag_columns.t4p", true, "section PTAB", "kind", [](Image& i) { i.page(2).kind = 1; }});
   all.push_back({"dag_column_padding.t4p", "dag_columns.t4p", false, "page 1", "padding",
                  [](Image& i) { i.inPage<char>(1, 8 * 4) = 1; }});
   all.push_back({"dag_column_page_missing.t4p", "dag_columns.t4p", true, "section PTAB", "missing", [](Image& i) {
@@ -67,12 +63,9 @@ std::vector<BadFile> badHeaders() {
 std::vector<BadFile> badNodes() {
   const auto node = [](std::string name, std::size_t which, std::string what, auto forge,
                        std::string place = "section NODE") {
-    return BadFile{"dag_node_" + name + ".t4p",
-                   "dag.t4p",
-                   true,
-                   std::move(place),
-                   std::move(what),
-                   [=](Image& i) { forge(i.item<NodeEntry>(patch_dag::kNodes, which)); }};
+    return BadFile{"dag_node_" + name + ".t4p", "dag.t4p", true, std::move(place), std::move(what), [=](Image& i) {
+                     forge(i.item<NodeEntry>(patch_dag::kNodes, which));
+                   }};
   };
   std::vector<BadFile> all{
       node("flags", 1, "flags", [](NodeEntry& n) { n.flags = 2; }),
@@ -99,8 +92,8 @@ std::vector<BadFile> badNodes() {
           "bounds_source", 0, "node it comes from", [](NodeEntry& n) { n.bounds.max.t = 0.5f; }, "section PTAB"),
       node("first", 1, "continue", [](NodeEntry& n) { n.first_patch = 0; }),
       node("patches_huge", 1, "continue", [](NodeEntry& n) { n.patches = kHuge; }),
-      node("patches_few", 1, "come from no node", [](NodeEntry& n) { n.patches = 1; }),
-      node("patches_none", 0, "", [](NodeEntry& n) { n.patches = 0; }),
+      node("patches_few", 1, "continue", [](NodeEntry& n) { n.patches = 1; }),
+      node("patches_none", 0, "no patches", [](NodeEntry& n) { n.patches = 0; }),
   };
   const auto arc = [&](std::string name, std::string place, std::string what, std::size_t page, auto forge) {
     all.push_back({"dag_arc_" + name + ".t4p", "dag.t4p", true, std::move(place), std::move(what),
@@ -120,6 +113,10 @@ std::vector<BadFile> badNodes() {
   arc("vertices_many", "section PTAB", "no vertex", 0, [](E& e) { e.counts[0] = 65536; });
   arc("tets_huge", "section PTAB", "count beyond", 0, [](E& e) { e.counts[1] = kHuge / 4; });
   arc("kind", "section PTAB", "kind", 1, [](E& e) { e.kind = 1; });
+  all.push_back({"dag_nodes_leave_patches.t4p", "dag.t4p", true, "section NODE", "come from no node", [](Image& i) {
+                   i.item<NodeEntry>(patch_dag::kNodes, 1).patches = 1;
+                   i.item<NodeEntry>(patch_dag::kNodes, 2).first_patch = 2;
+                 }});
   all.push_back({"dag_nodes_one.t4p", "dag_empty.t4p", true, "section NODE", "no source and no sink", [](Image& i) {
                    i.sectionOf(patch_dag::kNodes).item_count = 1;
                    i.sectionOf(patch_dag::kNodes).bytes = 64;
