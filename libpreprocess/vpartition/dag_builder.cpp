@@ -243,7 +243,7 @@ class Builder {
     for (const std::uint32_t v : vertices) {
       cell.ids.push_back(v);
       cell.positions.push_back(mesh_.positions[v]);
-      cell.flags.push_back(users[v] == kSeveral ? qslim4d::kLocked : std::uint8_t{0});
+      cell.flags.push_back(users[v] == kSeveral ? std::uint8_t{qslim4d::kLocked} : std::uint8_t{0});
     }
     cell.tets.reserve(chosen.size());
     for (const std::uint32_t t : chosen) {

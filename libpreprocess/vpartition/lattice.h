@@ -38,7 +38,7 @@ class Lattice {
 
  private:
   std::array<std::array<double, 3>, 3> rows_{};  // index offsets to steps
-  double time_ = 1;                              // frames to steps
+  double time_ = 0;                              // frames to steps
   std::array<double, 4> origin_{};               // index space
   std::array<double, 4> low_{};                  // steps, of what lies farthest down
   double step_ = 1;

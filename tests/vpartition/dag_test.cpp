@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "libpreprocess/error.h"
@@ -84,7 +85,9 @@ TEST(Dag, CellsHaveTheSizeAskedFor) {
     ASSERT_GE(run.dag.levels[0].cells, 8U);
     for (const LevelReport& level : run.dag.levels) {
       EXPECT_LE(level.largest_cell, 2 * 6000U);
-      if (level.cells > 1) EXPECT_GE(level.smallest_cell, 6000U / 10);
+      if (level.cells > 1) {
+        EXPECT_GE(level.smallest_cell, 6000U / 10);
+      }
       EXPECT_GT(level.vertices, 0U);
       EXPECT_EQ(level.locked > 0, level.cells > 1) << "in one cell nothing is locked";
       EXPECT_LT(static_cast<double>(level.locked), 0.75 * static_cast<double>(level.vertices));
@@ -188,7 +191,7 @@ TEST(Dag, OptionsOutOfRangeAndPartsAreRefused) {
   options = {};
   options.cell_tets = 10;
   EXPECT_EQ(code(options), FaultCode::kUsage);
-  for (const double scale : {0.0, -1.0, INFINITY, NAN}) {
+  for (const double scale : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
     options = {};
     options.time_scale = scale;
     EXPECT_EQ(code(options), FaultCode::kUsage);
