@@ -329,7 +329,8 @@ class Builder {
                 "cannot be made coarser: of " + std::to_string(report.tets_in) + " tetrahedra in " +
                     std::to_string(report.cells) + " cells " + std::to_string(report.tets_out) + " were left, with " +
                     std::to_string(static_cast<int>(locked)) + " % of the vertices locked between cells",
-                report.cells > 1 ? "raise --cell-tets" : "see tet4d-info --links for where the mesh is no manifold");
+                report.cells > 1 ? "raise --cell-tets, or lower --time-scale if cells are cut at every frame"
+                                 : "see tet4d-info --links for where the mesh is no manifold");
   }
 
   void addSource() {

@@ -39,10 +39,11 @@ std::vector<bool> randomCut(const LoadedDag& dag, std::mt19937& random, double c
   std::vector<bool> refined(dag.nodes.size());
   refined[0] = true;
   std::bernoulli_distribution yes(chance);
+  const auto whole = std::uniform_int_distribution<std::uint32_t>(0, dag.nodes[0].level)(random);
   for (std::size_t node = 1; node + 1 < dag.nodes.size(); ++node) {
     bool may = true;
     for (const std::uint64_t upper : dag.uppers[node]) may = may && refined[upper];
-    refined[node] = may && yes(random);
+    refined[node] = may && (dag.nodes[node].level > whole || yes(random));
   }
   return refined;
 }

@@ -31,7 +31,8 @@ struct LoadedDag {
 // Opens and verifies the file first. Throws Error.
 LoadedDag load(const std::string& path);
 
-// By node: refined. A node may be with the chance `chance` if all its upper nodes are.
+// By node: refined. Above a level drawn by chance all nodes are; from there on a node may be with the chance `chance`
+// if all its upper nodes are.
 std::vector<bool> randomCut(const LoadedDag& dag, std::mt19937& random, double chance);
 // Refined where the estimated error is above a limit.
 std::vector<bool> cutAt(const LoadedDag& dag, double error);

@@ -43,8 +43,8 @@ class Cuts : public ::testing::TestWithParam<Scene> {
     input_ = extractScene(mesh, scene.dims, scene.frames, scene.field);
     Options options;
     options.partition = scene.kind;
-    options.cell_tets = 4000;
-    options.patch_tets = 700;
+    options.cell_tets = 3000;
+    options.patch_tets = 500;
     buildTo(path_, mesh, options, 2);
     dag_ = load(path_);
   }
@@ -93,8 +93,7 @@ TEST_P(Cuts, ByErrorAreLegalAndAllChainsMeet) {
   for (const double error : errors) {
     const std::vector<bool> refined = cutAt(dag_, error);
     for (std::size_t node = 1; node < dag_.nodes.size(); ++node)
-      for (const std::uint64_t upper : dag_.uppers[node])
-        ASSERT_TRUE(!refined[node] || refined[upper]);
+      for (const std::uint64_t upper : dag_.uppers[node]) ASSERT_TRUE(!refined[node] || refined[upper]);
   }
   const topology::PatchDagCheck found = check(path_);
   EXPECT_TRUE(found.faults.empty()) << found.faults.front();
