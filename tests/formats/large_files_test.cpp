@@ -221,6 +221,7 @@ TEST(LargeFiles, PatchDagOfMoreThanTwoToThe32Tetrahedra) {
   std::array<patch_dag::NodeEntry, 2> nodes{};
   nodes[0].patches = 2, nodes[0].level = 1, nodes[0].error_measured = -1, nodes[0].bounds = header.domain;
   nodes[1].first_patch = 2;
+  nodes[1].bounds = page_layout::stored({});
   const std::vector<double> times{0, 1};
   const std::array<Part, 4> parts{{{patch_dag::kHeader, 256, std::as_bytes(std::span(&header, 1))},
                                    {patch_dag::kTimes, 8, std::as_bytes(std::span(times))},
