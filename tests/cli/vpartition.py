@@ -66,7 +66,7 @@ CASES = [
     },
     {
         "name": "one resolution is no DAG",
-        "shell": BALL + "vpartition ball.t4h -o a.t4p --cell-tets 12 --patch-tets 12",
+        "shell": BALL + "vpartition ball.t4h -o a.t4p --cell-tets 60 --patch-tets 60",
         "exit": 3,
         "stderr": ["cannot be made coarser", "% of the vertices locked", "raise --cell-tets"],
         "absent": ["a.t4p"],

@@ -103,7 +103,7 @@ TEST(DagStiff, AGraphOfOneLevelIsRefused) {
   extractScene(mesh, {24, 24, 24}, 6,
                [](double x, double y, double z, double t) { return ballAt(x, y, z, 11 + 0.3 * t, 12, 12, 8.3); });
   Options options;
-  options.cell_tets = options.patch_tets = 20;
+  options.cell_tets = options.patch_tets = 60;
   try {
     buildTo(path, mesh, options, 2);
     FAIL() << "accepted";
