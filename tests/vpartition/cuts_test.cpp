@@ -61,19 +61,19 @@ class Cuts : public ::testing::TestWithParam<Scene> {
 
 TEST_P(Cuts, RandomOnesAreClosedAndCoverSpaceTimeOnce) {
   std::mt19937 random(11);
-  std::uniform_real_distribution<float> anyTime(0, dag_.domain.max.t);
-  std::uniform_real_distribution<double> anyChance(0.3, 1);
+  std::uniform_real_distribution<float> any_time(0, dag_.domain.max.t);
+  std::uniform_real_distribution<double> any_chance(0.3, 1);
   std::set<std::vector<bool>> met;
   std::size_t mixed = 0;
   double worst = 0;
   for (int i = 0; i < 400; ++i) {
-    const std::vector<bool> refined = randomCut(dag_, random, anyChance(random));
+    const std::vector<bool> refined = randomCut(dag_, random, any_chance(random));
     const std::vector<std::size_t> cut = patchesOf(dag_, refined);
     met.insert(refined);
     std::set<std::uint32_t> levels;
     for (const std::size_t p : cut) levels.insert(dag_.nodes[dag_.patches[p].to].level);
     mixed += levels.size() > 1 ? 1 : 0;
-    float t = anyTime(random);
+    float t = any_time(random);
     if (i % 4 == 0) t = std::round(t);  // at a frame, where vertices stand close
     const SliceMesh slice = sliceOf(dag_, cut, t);
     ASSERT_EQ(qslim4d::testing::openEdges(slice, dag_.domain), 0U) << "cut " << i << " at " << t;
