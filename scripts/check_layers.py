@@ -26,6 +26,8 @@ ALLOWED = {
     "libpreprocess/hypermesh": BASE + ["libpreprocess/topology", "libpreprocess/exchange"],
     "libpreprocess/prisms": BASE + ["libpreprocess/topology", "libpreprocess/exchange"],
     "libpreprocess/qslim4d": BASE + ["libpreprocess/topology", "libpreprocess/exchange"],
+    # Simplifies its cells with qslim4d's kernel.
+    "libpreprocess/vpartition": BASE + ["libpreprocess/exchange", "libpreprocess/qslim4d"],
     "libpreprocess/dyntri": BASE + ["libpreprocess/topology"],
     "player/stream": FORMATS,
     "player/scene": FORMATS + ["player/stream"],
@@ -34,6 +36,7 @@ ALLOWED = {
     "tools/common": BASE,
     "tools": BASE + ["libpreprocess/exchange", "libpreprocess/topology", "libpreprocess/measure",
                      "libpreprocess/hypermesh", "libpreprocess/prisms", "libpreprocess/dyntri", "libpreprocess/qslim4d",
+                     "libpreprocess/vpartition",
                      "player/scene", "tools/common"],
     "tools/tet4d-play": FORMATS + ["libpreprocess", "player/stream", "player/scene", "player/render", "player/host",
                                    "tools/common", "tools/play"],

@@ -6,6 +6,7 @@
 
 #include "libpreprocess/error.h"
 #include "libpreprocess/topology/check_hypermesh.h"
+#include "libpreprocess/topology/check_patch_dag.h"
 #include "libpreprocess/topology/links.h"
 #include "tools/common/cli.h"
 #include "tools/common/exit_codes.h"
@@ -50,6 +51,16 @@ void checkLinks(const hypermesh::File& file, ordered_json& out, cli::Session& se
   addFaults(out, check.faults);
 }
 
+// Every cut as a closed mesh.
+void checkCuts(const patch_dag::File& file, ordered_json& out, cli::Session& session) {
+  const topology::PatchDagCheck check = topology::checkPatchDag(file, session.memory(), session.progress());
+  out["cuts"] = {{"nodes", check.nodes},
+                 {"cracked_nodes", check.cracked_nodes},
+                 {"crack_faces", check.crack_faces},
+                 {"open_faces", check.open_faces}};
+  addFaults(out, check.faults);
+}
+
 // What proving one page after the other may hold at once: a page decoded, and of a hypermesh the positions gathered for
 // it, its own vertices and those of earlier pages.
 template <class File>
@@ -86,6 +97,7 @@ void validate(const info::AnyFile& any, const Options& options, ordered_json& ou
     checkFaces(*mesh, out, session);
     if (options.links) checkLinks(*mesh, out, session);
   }
+  if (const auto* dag = std::get_if<patch_dag::File>(&any)) checkCuts(*dag, out, session);
 }
 
 int body(const Options& options, cli::Session& session) {
@@ -130,11 +142,15 @@ int main(int argc, char** argv) {
       .example("tet4d-info --json drop.t4h", "the same for scripts")
       .example("tet4d-info --validate drop.t4h && echo sound",
                "checksums, indices, every inner triangle in two tetrahedra")
-      .positional("FILE", "a grid4 (.t4g), hypermesh (.t4h), dynamic triangles (.t4d) or surface sequence (.t4q) file",
+      .positional("FILE",
+                  "a grid4 (.t4g), hypermesh (.t4h), dynamic triangles (.t4d), surface sequence (.t4q) or patch DAG "
+                  "(.t4p) file",
                   &options.file)
       .flag("--json", "print JSON", &options.json)
       .flag("--validate",
-            "prove structure, checksums, indices and, of a hypermesh, faces and orientation; exit 5 on faults",
+            "prove structure, checksums, indices, of a hypermesh faces and orientation, of a patch DAG that every cut "
+            "is closed; "
+            "exit 5 on faults",
             &options.validate)
       .flag("--links", "validate, and check that every vertex and edge link is that of a manifold", &options.links)
       .common({cli::kMemory, cli::kStats})

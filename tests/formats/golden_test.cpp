@@ -24,6 +24,7 @@ const bool kWrite = std::getenv("TET4D_WRITE_GOLDEN") != nullptr;
 std::uint32_t payloadOf(const std::string& name) {
   if (name.ends_with(".t4g")) return grid4::kPayload;
   if (name.ends_with(".t4q")) return surface_sequence::kPayload;
+  if (name.ends_with(".t4p")) return patch_dag::kPayload;
   return name.ends_with(".t4h") ? hypermesh::kPayload : dyntri::kPayload;
 }
 
@@ -43,7 +44,11 @@ const std::vector<std::string> kBad{"header_version.t4g",
                                     "triangles_page_alive_cut.t4d",
                                     "triangles_page_band_gap.t4d",
                                     "surface_triangle_range.t4q",
-                                    "surface_page_outside.t4q"};
+                                    "surface_page_outside.t4q",
+                                    "dag_node_error_grows.t4p",
+                                    "dag_node_bounds_apart.t4p",
+                                    "dag_arc_upwards.t4p",
+                                    "dag_page_tet_range.t4p"};
 
 // What earlier versions' writers made; it goes on being read.
 const std::vector<std::string> kKept{"triangles_v1.t4d", "triangles_one_v1.t4d", "triangles_gaps_zstd_v1.t4d"};

@@ -149,5 +149,17 @@ TEST(PagePrefix, OfASurfaceSequenceIsRefused) {
   });
 }
 
+TEST(PagePrefix, OfAPatchDagIsRefused) {
+  Scratch scratch;
+  const std::string path = scratch.path("a.t4p");
+  ASSERT_TRUE(sampleNamed("dag.t4p").write(path).ok());
+  auto file = patch_dag::File::open(path);
+  ASSERT_TRUE(file.ok());
+  const auto& entry = file.value().patchEntry(1);
+  auto page = file.value().pages().load(1);
+  checkPagePrefixes(page.value().bytes(),
+                    [&](std::span<const std::byte> bytes) { return patch_dag::validatePage(bytes, entry, path, 1); });
+}
+
 }  // namespace
 }  // namespace tet4d::test

@@ -186,5 +186,55 @@ TEST(LargeFiles, HypermeshWithVerticesBeyondTwoToThe32) {
   EXPECT_EQ(page.value().positions[2], third[1]);
 }
 
+// A patch of more than 2^32 tetrahedra stands as a hole; the one behind it is real, and the sums count both.
+TEST(LargeFiles, PatchDagOfMoreThanTwoToThe32Tetrahedra) {
+  Scratch scratch;
+  const std::string path = scratch.path("d.t4p");
+  SparseFile file(path);
+  constexpr std::uint64_t kMany = (std::uint64_t{1} << 32) + 5;
+  const std::array<Vec4f, 4> vertices{{{0, 0, 0, 0}, {1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}}};
+  const patch_dag::LocalTet tet{0, 1, 2, 3};
+  patch_dag::PatchHeader head{};
+  head.vertices = 4, head.tets = 1, head.to = 1;
+  page_layout::Builder builder;
+  builder.add<patch_dag::PatchHeader>({&head, 1});
+  builder.add(std::span<const Vec4f>(vertices));
+  builder.add(std::span(&tet, 1));
+  std::vector<paged::PageEntry> entries(2);
+  entries[0].offset = container::kPageAlignment;
+  entries[0].bytes = entries[0].raw_bytes = 128 + page_layout::padded(kMany * sizeof(patch_dag::LocalTet));
+  entries[1].offset = (entries[0].offset + entries[0].bytes + 4095) / 4096 * 4096;
+  entries[1].bytes = entries[1].raw_bytes = builder.bytes().size();
+  entries[1].xxh3 = container::xxh3(builder.bytes());
+  for (std::uint64_t p = 0; p < 2; ++p) {
+    entries[p].counts[0] = 4;
+    entries[p].counts[1] = p == 0 ? kMany : 1;
+    entries[p].counts[3] = 1;
+    entries[p].bounds = {{0, 0, 0, 0}, {1, 1, 1, 1}};
+  }
+  if (!file.put(entries[1].offset, builder.bytes())) GTEST_SKIP() << "no sparse files here: " << std::strerror(errno);
+  patch_dag::Header header{};
+  header.vertices = 8, header.tets = header.leaf_tets = kMany + 1, header.frames = 2;
+  header.domain = header.bounds = {{0, 0, 0, 0}, {1, 1, 1, 1}};
+  header.nodes = header.patches = 2;
+  header.time_scale = 1;
+  std::array<patch_dag::NodeEntry, 2> nodes{};
+  nodes[0].patches = 2, nodes[0].level = 1, nodes[0].error_measured = -1, nodes[0].bounds = header.domain;
+  nodes[1].first_patch = 2;
+  nodes[1].bounds = page_layout::stored({});
+  const std::vector<double> times{0, 1};
+  const std::array<Part, 4> parts{{{patch_dag::kHeader, 256, std::as_bytes(std::span(&header, 1))},
+                                   {patch_dag::kTimes, 8, std::as_bytes(std::span(times))},
+                                   {patch_dag::kNodes, 64, std::as_bytes(std::span(nodes))},
+                                   {paged::kPageTable, 128, std::as_bytes(std::span(entries))}}};
+  ASSERT_TRUE(finish(file, patch_dag::kPayload, entries[1].offset + entries[1].bytes, parts));
+  auto dag = patch_dag::File::open(path);
+  ASSERT_TRUE(dag.ok()) << dag.fault().place << ": " << dag.fault().what;
+  EXPECT_GT(dag.value().header().leaf_tets, std::uint64_t{1} << 32);
+  auto patch = dag.value().loadPatch(1);
+  ASSERT_TRUE(patch.ok()) << patch.fault().place << ": " << patch.fault().what;
+  EXPECT_EQ(patch.value().view.vertices[3], vertices[3]);
+}
+
 }  // namespace
 }  // namespace tet4d::test

@@ -15,7 +15,8 @@ import sys
 SKIPPED = 77
 READERS = {".t4g": ("read_grid4", "Grid4"), ".t4h": ("read_hypermesh", "Hypermesh"),
            ".t4d": ("read_dynamic_triangles", "DynamicTriangles"),
-           ".t4q": ("read_surface_sequence", "SurfaceSequence")}
+           ".t4q": ("read_surface_sequence", "SurfaceSequence"),
+           ".t4p": ("read_patch_dag", "PatchDag")}
 
 
 class Comparison:
@@ -126,7 +127,7 @@ def main():
     for path in bad:
         comparison.bad(path)
     comparison.golden(options.golden)
-    for name in ("grid_u8.t4g", "mesh_columns.t4h", "triangles.t4d", "surface_columns.t4q"):
+    for name in ("grid_u8.t4g", "mesh_columns.t4h", "triangles.t4d", "surface_columns.t4q", "dag.t4p"):
         comparison.programs(options.readers, options.work / "good" / name)
     print("\n".join(comparison.faults))
     print(f"{len(good)} good files, {len(bad)} forged ones, {comparison.checked} checks, {len(comparison.faults)} faults")

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <span>
 
 #include "formats/core/coordinates.h"
@@ -124,6 +126,38 @@ void addPayload(ordered_json& out, const surface_sequence::File& file) {
   out["index_to_world"] = mapJson(header.index_to_world);
 }
 
+// By level, the coarsest first: nodes, those that are stuck, and the patches that end in them.
+ordered_json levelsJson(const patch_dag::File& file) {
+  std::map<std::uint32_t, std::array<std::uint64_t, 4>, std::greater<>> levels;
+  for (const patch_dag::NodeEntry& node : file.nodes()) {
+    ++levels[node.level][0];
+    levels[node.level][1] += node.flags & patch_dag::kStuck;
+  }
+  for (std::size_t p = 0; p < file.patches(); ++p) {
+    auto& level = levels[file.nodes()[file.toOf(p)].level];
+    ++level[2], level[3] += file.patchEntry(p).counts[1];
+  }
+  ordered_json out = ordered_json::array();
+  for (const auto& [level, sums] : levels) {
+    if (level == file.nodes().front().level) continue;  // the source
+    out.push_back({{"level", level}, {"nodes", sums[0]}, {"stuck", sums[1]}, {"patches", sums[2]}, {"tets", sums[3]}});
+  }
+  return out;
+}
+
+void addPayload(ordered_json& out, const patch_dag::File& file) {
+  const patch_dag::Header& header = file.header();
+  out["counts"] = {{"vertices", header.vertices}, {"tets", header.tets},       {"frames", header.frames},
+                   {"nodes", header.nodes},       {"patches", header.patches}, {"leaf_tets", header.leaf_tets}};
+  out["bounds"] = worldBounds(header.bounds, header.index_to_world, file.times());
+  out["domain"] = worldBounds(header.domain, header.index_to_world, file.times());
+  out["isovalue"] = std::isnan(header.isovalue) ? ordered_json(nullptr) : ordered_json(header.isovalue);
+  out["time_scale"] = header.time_scale;
+  out["levels"] = levelsJson(file);
+  out["columns"] = columnsJson(file.columns());
+  out["index_to_world"] = mapJson(header.index_to_world);
+}
+
 std::string scalarText(const ordered_json& value) {
   return value.is_string() ? value.get<std::string>()
                            : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
@@ -143,17 +177,20 @@ Result<AnyFile> open(const std::string& path) {
       return opened(dyntri::File::open(path));
     case surface_sequence::kPayload:
       return opened(surface_sequence::File::open(path));
+    case patch_dag::kPayload:
+      return opened(patch_dag::File::open(path));
     default:
       return Fault{
           FaultCode::kBadInput, path, "header",
-          fmt::format("payload '{}' is unknown; known are grid4, hypermesh, dynamic_triangles and surface_sequence",
-                      container::fourCcText(header.value().payload)),
+          fmt::format(
+              "payload '{}' is unknown; known are grid4, hypermesh, dynamic_triangles, surface_sequence and patch_dag",
+              container::fourCcText(header.value().payload)),
           "use a version of tet4d that knows it"};
   }
 }
 
 const char* payloadName(const AnyFile& file) {
-  static constexpr std::array kNames{"grid4", "hypermesh", "dynamic_triangles", "surface_sequence"};
+  static constexpr std::array kNames{"grid4", "hypermesh", "dynamic_triangles", "surface_sequence", "patch_dag"};
   static_assert(kNames.size() == std::variant_size_v<AnyFile>);
   return kNames[file.index()];
 }

@@ -393,7 +393,7 @@ std::vector<BadFile> badSurfaces() {
 
 std::vector<BadFile> badContents() {
   std::vector<BadFile> all = badGrids();
-  for (auto part : {badMeshHeaders(), badMeshPages(), badTriangles(), badSurfaces(), badFrames()})
+  for (auto part : {badMeshHeaders(), badMeshPages(), badTriangles(), badSurfaces(), badFrames(), badDags()})
     all.insert(all.end(), part.begin(), part.end());
   return all;
 }

@@ -23,6 +23,9 @@ std::vector<BadFile> badTables();
 // Headers, timelines, columns and pages of the payloads.
 std::vector<BadFile> badContents();
 
+// The part of them that are patch DAGs.
+std::vector<BadFile> badDags();
+
 // The bytes of a bad file, made in a folder of its own.
 std::vector<std::byte> bytesOf(const BadFile& bad);
 

@@ -10,6 +10,7 @@
 #include "formats/dynamic_triangles.h"
 #include "formats/grid4.h"
 #include "formats/hypermesh.h"
+#include "formats/patch_dag.h"
 #include "formats/surface_sequence.h"
 
 namespace tet4d::test {
@@ -155,6 +156,47 @@ Result<std::string> dump(const hypermesh::File& file) {
   return lines.take();
 }
 
+Result<std::string> dump(const patch_dag::File& file) {
+  Lines lines;
+  const auto& h = file.header();
+  lines.word("patch_dag vertices").number(h.vertices).word("tets").number(h.tets).word("frames").number(h.frames);
+  lines.word("flags").number(h.flags).word("columns").number(h.columns).word("nodes").number(h.nodes);
+  lines.word("patches").number(h.patches).word("leaf_tets").number(h.leaf_tets).end().map(h.index_to_world);
+  lines.word("domain").vec(h.domain.min).vec(h.domain.max).end();
+  lines.word("bounds").vec(h.bounds.min).vec(h.bounds.max).end();
+  lines.word("isovalue").number(h.isovalue).end().word("time_scale").number(h.time_scale).end();
+  lines.word("times").numbers(file.times()).end();
+  for (const auto& c : file.columns()) lines.word("column").number(c.components).word(c.name).end();
+  for (std::size_t i = 0; i < file.nodes().size(); ++i) {
+    const patch_dag::NodeEntry& node = file.nodes()[i];
+    lines.word("node").number(i).word("patches").number(node.first_patch).number(node.patches);
+    lines.word("level").number(node.level).word("flags").number(node.flags);
+    lines.word("errors").number(node.error_estimated).number(node.error_measured);
+    lines.word("min").vec(node.bounds.min).word("max").vec(node.bounds.max).end();
+  }
+  const std::size_t stride = 1 + file.columns().size();
+  for (std::size_t p = 0; p < file.patches(); ++p) {
+    auto patch = file.loadPatch(p);
+    if (!patch.ok()) return patch.fault();
+    const patch_dag::PatchView& view = patch.value().view;
+    lines.page(p * stride, file.patchEntry(p)).word("shared").number(view.header->shared).end();
+    for (const Vec4f& v : view.vertices) lines.word("v").vec(v).end();
+    for (const auto& tet : view.tets) lines.word("tet").numbers(tet).end();
+    for (std::size_t c = 0; c < file.columns().size(); ++c) {
+      auto column = file.loadColumn(c, p);
+      if (!column.ok()) return column.fault();
+      lines.page(p * stride + 1 + c, file.pages().entries()[p * stride + 1 + c]);
+      const std::size_t bytes = file.columns()[c].components * sizeof(float);
+      for (std::size_t v = 0; v < view.vertices.size(); ++v) {
+        lines.word("c");
+        putSamples<float>(lines, column.value().bytes().subspan(v * bytes, bytes));
+        lines.end();
+      }
+    }
+  }
+  return lines.take();
+}
+
 Result<std::string> dump(const dyntri::File& file) {
   Lines lines;
   const auto& h = file.header();
@@ -240,6 +282,7 @@ Result<std::string> dumpOf(const std::string& path, std::uint32_t payload) {
   if (payload == grid4::kPayload) return dumpAs<grid4::File>(path);
   if (payload == hypermesh::kPayload) return dumpAs<hypermesh::File>(path);
   if (payload == surface_sequence::kPayload) return dumpAs<surface_sequence::File>(path);
+  if (payload == patch_dag::kPayload) return dumpAs<patch_dag::File>(path);
   return dumpAs<dyntri::File>(path);
 }
 

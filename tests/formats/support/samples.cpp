@@ -295,6 +295,69 @@ Sheet oneTet() {
   return sheet;
 }
 
+// Tetrahedra of a page as a patch, its vertices in order of use.
+struct SmallPatch {
+  std::vector<Vec4f> vertices;
+  std::vector<patch_dag::LocalTet> tets;
+};
+SmallPatch patchOf(const Sheet::Page& page, std::size_t first, std::size_t count) {
+  SmallPatch patch;
+  std::map<std::uint32_t, std::uint16_t> local;
+  for (const hypermesh::Tet& tet : std::span(page.tets).subspan(first, count)) {
+    auto& named = patch.tets.emplace_back();
+    for (std::size_t i = 0; i < 4; ++i) {
+      const auto [found, is_new] = local.try_emplace(tet[i], static_cast<std::uint16_t>(patch.vertices.size()));
+      if (is_new) patch.vertices.push_back(page.vertices[tet[i]]);
+      named[i] = found->second;
+    }
+  }
+  return patch;
+}
+
+// A sheet of one page as a DAG: whole above a node whose two halves end in the sink; without `split` as one patch from
+// source to sink. The coarse patch is as fine as the others: nothing is simplified here.
+Status writeDag(const std::string& path, const Sheet& sheet, paged::Codec codec, bool split, bool columns) {
+  patch_dag::Header header{};
+  header.flags = sheet.header.flags;
+  header.index_to_world = sheet.header.index_to_world;
+  header.domain = sheet.header.domain;
+  header.isovalue = sheet.header.isovalue;
+  header.time_scale = 1;
+  std::vector<patch_dag::NodeEntry> nodes(split ? 3 : 2);
+  nodes[0].level = split ? 2 : 1;
+  nodes[0].bounds = sheet.header.domain;
+  nodes[0].error_measured = columns ? 0.5f : -1.0f;
+  if (split) {
+    nodes[0].error_estimated = nodes[1].error_estimated = 0.25f;
+    nodes[1].error_measured = -1;
+    nodes[1].level = 1;
+    nodes[1].flags = patch_dag::kStuck;
+    nodes[1].bounds = sheet.header.domain;
+  }
+  std::vector<Column> declared;
+  if (columns) declared = {{"pressure", 1}, {"velocity \xc3\xbc", 3}};
+  auto writer = patch_dag::Writer::create(path, header, sheet.times, nodes, declared, codec, true);
+  if (!writer.ok()) return writer.fault();
+  const auto add = [&](std::uint64_t from, std::uint64_t to, const SmallPatch& patch) {
+    std::vector<float> pressure, velocity;
+    for (const Vec4f& v : patch.vertices) {
+      pressure.push_back(v.x * 2);
+      velocity.insert(velocity.end(), {v.x, -v.y, std::numeric_limits<float>::infinity()});
+    }
+    const std::array<std::span<const float>, 2> values{pressure, velocity};
+    return writer.value().addPatch({from, to, split ? patch.vertices.size() : 0, patch.vertices, patch.tets,
+                                    std::span(values).first(declared.size())});
+  };
+  for (const Sheet::Page& page : sheet.pages) {
+    const std::size_t half = page.tets.size() / 2;
+    if (Status s = add(0, 1, patchOf(page, 0, page.tets.size())); !s.ok()) return s;
+    if (!split) continue;
+    if (Status s = add(1, 2, patchOf(page, 0, half)); !s.ok()) return s;
+    if (Status s = add(1, 2, patchOf(page, half, half)); !s.ok()) return s;
+  }
+  return writer.value().close(kProvenanceText);
+}
+
 std::vector<Sample> allSamples() {
   using enum SampleType;
   const auto raw = paged::Codec::kRaw, zstd = paged::Codec::kZstd;
@@ -348,6 +411,14 @@ std::vector<Sample> allSamples() {
        [=](auto& p) { return writeSurfaces(p, 2, 1, raw, true); }},
       {"surface_columns_zstd.t4q", surface_sequence::kPayload, false,
        [=](auto& p) { return writeSurfaces(p, 30, 1, zstd, true); }},
+      {"dag.t4p", patch_dag::kPayload, true, [=](auto& p) { return writeDag(p, makeSheet(1, 1), raw, true, false); }},
+      {"dag_one.t4p", patch_dag::kPayload, true, [=](auto& p) { return writeDag(p, oneTet(), raw, false, false); }},
+      {"dag_empty.t4p", patch_dag::kPayload, true,
+       [=](auto& p) { return writeDag(p, withoutPages(), raw, false, false); }},
+      {"dag_columns.t4p", patch_dag::kPayload, true,
+       [=](auto& p) { return writeDag(p, makeSheet(1, 1), raw, false, true); }},
+      {"dag_columns_zstd.t4p", patch_dag::kPayload, false,
+       [=](auto& p) { return writeDag(p, makeSheet(3, 1), zstd, false, true); }},
   };
   if (!paged::hasCodec(zstd)) std::erase_if(all, [](const Sample& s) { return !s.exact; });
   return all;
@@ -379,6 +450,7 @@ Status openAndVerify(const std::string& path, std::uint32_t payload, bool* opene
   if (payload == grid4::kPayload) return openAndVerifyAs<grid4::File>(path, opened);
   if (payload == hypermesh::kPayload) return openAndVerifyAs<hypermesh::File>(path, opened);
   if (payload == surface_sequence::kPayload) return openAndVerifyAs<surface_sequence::File>(path, opened);
+  if (payload == patch_dag::kPayload) return openAndVerifyAs<patch_dag::File>(path, opened);
   return openAndVerifyAs<dyntri::File>(path, opened);
 }
 

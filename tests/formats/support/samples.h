@@ -9,6 +9,7 @@
 #include "formats/dynamic_triangles.h"
 #include "formats/grid4.h"
 #include "formats/hypermesh.h"
+#include "formats/patch_dag.h"
 #include "formats/surface_sequence.h"
 
 namespace tet4d::test {
@@ -36,8 +37,8 @@ struct Sample {
   bool exact;  // its bytes depend on this project alone (no compressor)
   std::function<Status(const std::string& path)> write;
 };
-// Grids, hypermeshes, dynamic triangles and surface sequences: raw and zstd (if built), with columns, empty pages, no
-// pages, one element.
+// Grids, hypermeshes, dynamic triangles, surface sequences and patch DAGs: raw and zstd (if built), with columns, empty
+// pages, no pages, one element.
 const std::vector<Sample>& samples();
 const Sample& sampleNamed(const std::string& name);
 
