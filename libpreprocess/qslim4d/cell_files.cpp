@@ -66,11 +66,11 @@ void addNextSums(outofcore::RecordReader<double>& reader, std::uint32_t v, Colum
   for (std::size_t i = 0; i < count; ++i) reader.next(numbers[i]);
   if (v == kNone) return;
   Quadric squares;
-  std::memcpy(&squares, numbers.data(), sizeof squares);
+  std::memcpy(static_cast<void*>(&squares), numbers.data(), sizeof squares);
   columns.squares[v].add(squares);
   for (std::size_t j = 0; j < columns.terms; ++j) {
     AttributeTerm term;
-    std::memcpy(&term, numbers.data() + kQuadricDoubles + j * kTermDoubles, sizeof term);
+    std::memcpy(static_cast<void*>(&term), numbers.data() + kQuadricDoubles + j * kTermDoubles, sizeof term);
     AttributeTerm& sum = columns.sums[std::size_t{v} * columns.terms + j];
     sum.gradient += term.gradient, sum.offset += term.offset, sum.weight += term.weight;
   }
@@ -211,7 +211,7 @@ void writeResult(const std::string& path, const SlimMesh& mesh, std::span<const 
   const auto addNumbers = [&](const auto& item) {
     std::array<double, sizeof(item) / sizeof(double)> numbers{};
     std::memcpy(numbers.data(), &item, sizeof item);
-    for (const double number : numbers) sums.add(number);
+    for (const double one : numbers) sums.add(one);
   };
   for (const std::uint32_t v : kept) {
     addNumbers(mesh.columns.squares[v]);

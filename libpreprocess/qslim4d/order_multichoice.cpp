@@ -64,7 +64,7 @@ class Multichoice {
     std::uint32_t u, v;
   };
   struct Edge {
-    float cost;
+    double cost;
     std::uint32_t u, v;  // u < v
   };
 
@@ -122,14 +122,14 @@ class Multichoice {
   // All edges as they are now, cheapest first; those whose surroundings have not changed meanwhile are collapsed if
   // that is allowed, until enough are. False if none is.
   bool scanAndCollapse() {
+    release(live_);  // the edges take more than anything else
     std::size_t count = 0;
     forEachEdge([&](std::uint32_t, std::uint32_t) { ++count; });
     std::vector<Edge> edges;
     edges.reserve(count);
     forEachEdge([&](std::uint32_t u, std::uint32_t v) {
       Placement placement;
-      if (collapser_.evaluate(u, v, placement) && ledger_.isAllowed(placement))
-        edges.push_back({static_cast<float>(placement.cost), u, v});
+      if (collapser_.evaluate(u, v, placement) && ledger_.isAllowed(placement)) edges.push_back({placement.cost, u, v});
     });
     std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
       return a.cost != b.cost ? a.cost < b.cost : std::pair(a.u, a.v) < std::pair(b.u, b.v);

@@ -75,7 +75,7 @@ CELLS = "dam.t4h --ratio 0.2 --cell-tets 8000 --measure 0 -q"
 # The same killed at once when the journal has so many lines, each run going on with what the one before left.
 KILL = """for n in 2 5 9 14 20 27; do hyper-qslim {} --resume -o x.t4h & shell=$!
 until test "$(cat x.t4h.cells/journal 2>/dev/null | wc -l)" -ge $n; do kill -0 $shell 2>/dev/null || break; sleep 0.005; done
-kill -KILL $(cat /proc/$shell/task/$shell/children 2>/dev/null) 2>/dev/null || true; wait $shell || true; done; """
+kill -KILL $(cat /proc/$shell/task/$shell/children 2>/dev/null) 2>/dev/null || true; wait $shell || true; rm -f x.t4h.partial-*; done; """
 TWO = "tet4d-mc {data}/dambreak/alpha_00{08,09,10}.nrrd --iso 0.3,0.7 --stride 2 --normals gradient --velocity -q -o two.t4h; "
 
 CASES = [
@@ -307,7 +307,7 @@ CASES = [
     {
         "name": "cells: --non-manifold keep looks for such places in cells",
         "shell": DAM + f"hyper-qslim {CELLS.replace(' -q', '')} --non-manifold keep -o x.t4h",
-        "stderr": ["left as they are: 0 triangles", "cells to"],
+        "stderr": ["cells to", "left as they are: 0 triangles"],
         "not_stderr": ["in core"],
         "absent": ["x.t4h.cells"],
         "needs": ["tet4d-mc"],

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "libpreprocess/column_list.h"
 #include "libpreprocess/error.h"
 #include "libpreprocess/exchange/mesh_pages.h"
 #include "libpreprocess/qslim4d/cells.h"

@@ -291,7 +291,7 @@ TEST(CellsLoadStiff, PagesOfASceneThatStandsStillStayBounded) {
   for (std::uint32_t y = 0; y < kSide; ++y) {
     for (std::uint32_t x = 0; x < kSide; ++x) {
       const std::uint32_t a = y * (kSide + 1) + x, b = a + 1, c = b + kSide + 1, d = a + kSide + 1;
-      for (const auto& [p, q, r] : {std::array{a, b, c}, std::array{a, c, d}}) {
+      for (const auto& [p, q, r] : {std::array{a, b, c}, std::array{a, d, c}}) {
         tets.push_back({p, q, r, r + layer});
         tets.push_back({p, q, r + layer, q + layer});
         tets.push_back({p, q + layer, r + layer, p + layer});
@@ -331,7 +331,7 @@ TEST(CellsLoadStiff, PagesOfASceneThatStandsStillStayBounded) {
   }
   EXPECT_LT(writtenPageBytes(points.size(), tets.size()), std::uint64_t{12} << 20);
   const SliceMesh slice = exchange::sliceHypermesh(file, 500);
-  EXPECT_EQ(slice.triangles.size(), tets.size() * 2 / 3) << "every prism is cut";
+  EXPECT_EQ(slice.triangles.size(), tets.size() * 4 / 3) << "every prism is cut";
 }
 
 // ---- places that are no manifold
@@ -382,22 +382,31 @@ TEST(CellsLoad, WhatIsNoManifoldIsRefusedOrStaysToTheBit) {
   EXPECT_THROW(simplifyTo(out, file, options, cells), Error);
   EXPECT_FALSE(std::filesystem::exists(out));
   cells.keep_non_manifold = true;
-  const CellReport report = simplifyTo(out, file, options, cells, {2});
-  EXPECT_LE(report.tets, options.target_tets);
   NonManifold before, after;
-  const SlimMesh was = keptMesh(file, before), is = keptMesh(open(out), after);
+  const SlimMesh was = keptMesh(file, before);
   EXPECT_EQ(before.vertices, 4u);
   EXPECT_EQ(before.triangles, 1u);
-  EXPECT_EQ(after.vertices, before.vertices);
-  EXPECT_EQ(after.triangles, before.triangles);
-  EXPECT_EQ(report.non_manifold.vertices, before.vertices);
-  EXPECT_EQ(report.non_manifold.triangles, before.triangles);
-  for (std::uint32_t v = 0; v < was.positions.size(); ++v) {
-    if ((was.is_boundary[v] & kPinned) == 0) continue;
-    bool is_there = false;
-    for (std::uint32_t w = 0; w < is.positions.size(); ++w)
-      is_there |= (is.is_boundary[w] & kPinned) != 0 && is.positions[w] == was.positions[v];
-    EXPECT_TRUE(is_there) << v;
+  for (const std::uint64_t share : {6, 2}) {
+    cells.cell_tets = file.header().tets / share;
+    const CellReport report = simplifyTo(out, file, options, cells, {2});
+    EXPECT_LE(report.tets, options.target_tets);
+    const SlimMesh is = keptMesh(open(out), after);
+    EXPECT_EQ(after.vertices, before.vertices);
+    EXPECT_EQ(after.triangles, before.triangles);
+    // Their tetrahedra lie in both balls, so that small cells may never have all of them.
+    EXPECT_LE(report.non_manifold.vertices, before.vertices);
+    if (report.sweeps.back().cells == 1) {
+      EXPECT_EQ(report.non_manifold.vertices, before.vertices);
+      EXPECT_EQ(report.non_manifold.triangles, before.triangles);
+    }
+    EXPECT_EQ(report.sweeps.back().cells == 1, share == 2);
+    for (std::uint32_t v = 0; v < was.positions.size(); ++v) {
+      if ((was.is_boundary[v] & kPinned) == 0) continue;
+      bool is_there = false;
+      for (std::uint32_t w = 0; w < is.positions.size(); ++w)
+        is_there |= (is.is_boundary[w] & kPinned) != 0 && is.positions[w] == was.positions[v];
+      EXPECT_TRUE(is_there) << v;
+    }
   }
 }
 
@@ -454,11 +463,12 @@ TEST(CellsLoad, APromiseThatCannotBeKeptWritesNothing) {
   std::filesystem::remove(out);
   const hypermesh::File file = open(in);
   CellOptions cells = inCells(file.header().tets / 4);
-  cells.promise = promiseOf(file, 1e-9, 2);
+  // The first estimate is the promise, which is several times below the largest distance.
+  cells.promise = promiseOf(file, 0.02, 1);
   const CellReport report = simplifyTo(out, file, {}, cells, {2});
   EXPECT_FALSE(report.is_kept);
-  EXPECT_EQ(report.tries, 2u);
-  EXPECT_GT(report.bound, 1e-9);
+  EXPECT_EQ(report.tries, 1u);
+  EXPECT_GT(report.bound, 0.02);
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
@@ -482,7 +492,7 @@ TEST(CellsLoad, InterruptsAtManyStepsAreResumedToTheSameBytes) {
     cells.resume = true;
     int interrupts = 0;
     bool whole = false;
-    for (int steps = 2; !whole && interrupts < 200; steps += promised ? 7 : 4) {
+    for (int steps = 2; !whole && interrupts < 200; steps += promised ? 11 : 4) {
       testing::Interrupting progress(steps);
       outofcore::ThreadExecutor executor(1);
       outofcore::MemoryBudget memory;

@@ -145,18 +145,39 @@ TEST(QslimStiff, TimesOfANanosecondAndOfThirtyYears) {
   }
 }
 
-// Coordinates so small that float32 holds them as denormals, and so large that their products overflow it.
+marching::ExtractedMesh scaledBy(marching::ExtractedMesh mesh, double scale) {
+  const auto scaled = [scale](const Vec4f& p) -> Vec4f {
+    return {static_cast<float>(p.x * scale), static_cast<float>(p.y * scale), static_cast<float>(p.z * scale), p.t};
+  };
+  for (Vec4f& p : mesh.vertices) p = scaled(p);
+  mesh.header.domain.min = scaled(mesh.header.domain.min), mesh.header.domain.max = scaled(mesh.header.domain.max);
+  return mesh;
+}
+
+// Lengths of atoms and of galaxies: costs that no float32 holds. The same error for the scale, in every order.
+TEST(QslimStiff, SizesOfAtomsAndGalaxies) {
+  const marching::ExtractedMesh mesh = extractField({13, 13, 13}, 5, movingBall);
+  for (const Order order : kOrders) {
+    double usual = 0;
+    for (const double scale : {1.0, 1e-12, 1e21}) {
+      const marching::ExtractedMesh other = scaledBy(mesh, scale);
+      SlimMesh slim = makeSlimMesh(other.vertices, other.tets, other.header.domain, {}, Metric::kSlice);
+      const Stats stats = run(slim, order, mesh.tets.size() / 10);
+      EXPECT_LE(slim.live_tets, mesh.tets.size() / 10) << scale;
+      if (scale == 1) usual = stats.largest_error;
+      EXPECT_NEAR(stats.largest_error / scale, usual, 0.5 * usual) << scale;
+    }
+  }
+}
+
+// Coordinates that float32 holds as denormals, with few digits left, and such whose squares overflow it.
 TEST(QslimStiff, DenormalAndHugeCoordinates) {
   const marching::ExtractedMesh mesh = extractField({13, 13, 13}, 5, movingBall);
   for (const double scale : {1e-41, 1e30}) {
-    std::vector<Vec4f> points = mesh.vertices;
-    const auto scaled = [scale](float x) { return static_cast<float>(x * scale); };
-    for (Vec4f& p : points) p = {scaled(p.x), scaled(p.y), scaled(p.z), p.t};
-    Bounds4f domain = mesh.header.domain;
-    domain.min = {scaled(domain.min.x), scaled(domain.min.y), scaled(domain.min.z), domain.min.t};
-    domain.max = {scaled(domain.max.x), scaled(domain.max.y), scaled(domain.max.z), domain.max.t};
+    const marching::ExtractedMesh other = scaledBy(mesh, scale);
+    const Bounds4f& domain = other.header.domain;
     for (const Order order : kOrders) {
-      SlimMesh slim = makeSlimMesh(points, mesh.tets, domain, {}, Metric::kSlice);
+      SlimMesh slim = makeSlimMesh(other.vertices, other.tets, domain, {}, Metric::kSlice);
       run(slim, order, mesh.tets.size() / 4);
       EXPECT_LE(slim.live_tets, mesh.tets.size() / 2) << scale;
       EXPECT_TRUE(topology::checkLinks(testing::liveTets(slim), slim.positions.size(), true).ok());
