@@ -276,7 +276,7 @@ CASES = [
     },
     {
         "name": "cells: parts, columns and the metric's, the same bytes for any threads and with little memory as a hard limit",
-        "shell": TWO + "q='two.t4h --ratio 0.2 --attributes velocity --cell-tets 9000 --measure 0 -q'; hyper-qslim $q -j 1 -o one.t4h; "
+        "shell": TWO + "q='two.t4h --ratio 0.2 --attributes velocity --cell-tets 4000 --measure 0 -q'; hyper-qslim $q -j 1 -o one.t4h; "
         "plan=$(hyper-qslim $q -n -o x.t4h | awk '/^peak_memory_bytes/ { print $2 }'); hyper-qslim $q -j 3 -o three.t4h; cmp one.t4h three.t4h; "
         "(ulimit -d $((plan / 1024 + 4096)); hyper-qslim $q -j 1 --memory $plan -o little.t4h); cmp one.t4h little.t4h; "
         "tet4d-info --validate --links --json one.t4h",
@@ -287,7 +287,7 @@ CASES = [
     },
     {
         "name": "cells: a promise is kept, measured from files page by page",
-        "shell": COLUMNS + "hyper-qslim dam.t4h --max-error 0.02 --tries 4 --cell-tets 9000 --measure 3 -q -o x.t4h --stats s.json; "
+        "shell": COLUMNS + "hyper-qslim dam.t4h --max-error 0.02 --tries 4 --cell-tets 3000 --measure 3 -q -o x.t4h --stats s.json; "
         "tet4d-info --validate --links --json x.t4h",
         "json": {"valid": True},
         "check": check_cells_promise,
