@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -12,13 +10,13 @@
 #include "libpreprocess/outofcore/external_sort.h"
 #include "libpreprocess/outofcore/record_files.h"
 #include "libpreprocess/qslim4d/cell_files.h"
-#include "libpreprocess/qslim4d/packed_mesh.h"
+#include "libpreprocess/qslim4d/page_plan.h"
+#include "libpreprocess/qslim4d/value_sort.h"
 
 namespace tet4d::qslim4d {
 namespace {
 
 using outofcore::BucketFiles;
-using Numbers = std::array<std::uint64_t, 4>;
 
 constexpr std::size_t kFileBuffer = std::size_t{1} << 20;
 
@@ -49,93 +47,6 @@ struct ByFirst {
   bool operator()(const SortedTet& a, const SortedTet& b) const {
     return a.first != b.first ? a.first < b.first : a.sequence < b.sequence;
   }
-};
-
-// Vertices whose values are put in order together; more of them where that would be too many files.
-std::uint64_t valueRange(std::uint64_t vertices, std::size_t stride, std::size_t buffer_bytes) {
-  constexpr std::uint64_t kMostRanges = 1024;
-  const std::uint64_t fitting = buffer_bytes / std::max<std::size_t>(1, 2 * stride * sizeof(float));
-  return std::max({fitting, (vertices + kMostRanges - 1) / kMostRanges, std::uint64_t{1024}});
-}
-
-// Vertices begin .. end - 1 of a part, and what its tetrahedra reach.
-struct Page {
-  std::size_t part = 0;
-  std::uint64_t begin = 0, end = 0;
-  std::uint64_t first_tet = 0, tets = 0;
-  std::uint64_t first = 0;  // number of its first vertex in the file
-  Bounds4f bounds;
-};
-
-// Tetrahedra that come one after the other, and what they reach.
-struct Reach {
-  std::uint64_t tets = 0;
-  Bounds4f bounds;
-  void add(const Reach& other) {
-    tets += other.tets;
-    bounds.add(other.bounds);
-  }
-};
-
-// Cuts a part into pages as pack() and writeMeshes() do, from its tetrahedra in order.
-class PagePlan {
- public:
-  PagePlan(std::size_t part, std::span<const Vec4f> vertices) : part_(part), vertices_(vertices) {}
-
-  void add(const SortedTet& tet) {
-    if (tet.first != vertex_) closeVertex(tet.first);
-    Reach one{1, {}};
-    for (const std::uint64_t v : tet.vertices) one.bounds.add(vertices_[v]);
-    own_.add(one);
-  }
-
-  std::vector<Page> finish() {
-    closeVertex(vertices_.size());
-    while (begin_ < vertices_.size()) closeAt(std::min<std::uint64_t>(vertices_.size(), begin_ + kMostPageItems));
-    return std::move(pages_);
-  }
-
- private:
-  // All tetrahedra of vertex_ are known, those in front of `next` have none.
-  void closeVertex(std::uint64_t next) {
-    // The page may not take them, or it would end on its way here.
-    if (page_.tets + own_.tets > kMostPageItems && vertex_ > begin_) closeAt(vertex_);
-    page_.add(own_);
-    own_ = {};
-    vertex_ = next;
-    if (next == vertices_.size()) return;
-    // What comes first on the way to `next`: as many vertices as a page may have, or the end of a frame.
-    for (;;) {
-      if (const std::uint64_t full = begin_ + kMostPageItems; full <= std::min(next, end_)) {
-        closeAt(full);
-      } else if (end_ <= next) {
-        if (end_ > begin_ && page_.tets >= kLeastPageTets) closeAt(end_);
-        endFrame();
-      } else {
-        return;
-      }
-    }
-  }
-
-  void endFrame() {
-    const float frame = std::floor(vertices_[end_].t);
-    while (end_ < vertices_.size() && std::floor(vertices_[end_].t) == frame) ++end_;
-  }
-
-  void closeAt(std::uint64_t end) {
-    for (std::uint64_t v = begin_; v < end && page_.tets == 0; ++v) page_.bounds.add(vertices_[v]);
-    pages_.push_back({part_, begin_, end, tets_, page_.tets, 0, page_.bounds});
-    tets_ += page_.tets;
-    begin_ = end;
-    page_ = {};
-  }
-
-  std::size_t part_;
-  std::span<const Vec4f> vertices_;
-  std::vector<Page> pages_;
-  std::uint64_t begin_ = 0, end_ = 0;  // of the page; of the frame that is read
-  std::uint64_t vertex_ = 0, tets_ = 0;
-  Reach page_, own_;  // of the page without vertex_; of vertex_
 };
 
 // A part with its vertices numbered and all sorted, in files.
@@ -236,67 +147,16 @@ class SortedPart {
       BucketFiles sorted(prefix_ + "tets", 1, kFileBuffer);
       PagePlan plan(part_, vertices());
       tets.finish([&](const SortedTet& tet) {
-        plan.add(tet);
+        plan.add(tet.first, tet.vertices);
         sorted.add(0, tet.vertices);
       });
       sorted.finish();
       pages_ = plan.finish();
     }
-    values.finish([&](std::size_t c) { return columnPath(c); }, columns_);
+    std::vector<std::string> paths;
+    for (std::size_t c = 0; c < columns_.size(); ++c) paths.push_back(columnPath(c));
+    values.finish(columns_, paths);
   }
-
-  // Values to files of a column each, by the numbers of their vertices: first to ranges of these, each of which fits
-  // into memory.
-  class ValueSort {
-   public:
-    ValueSort(const std::string& prefix, std::uint64_t vertices, std::size_t stride, std::size_t buffer_bytes)
-        : vertices_(vertices),
-          stride_(stride),
-          range_(valueRange(vertices, stride, buffer_bytes)),
-          buffer_bytes_(buffer_bytes),
-          ranges_(prefix, stride == 0 ? 0 : static_cast<std::size_t>((vertices + range_ - 1) / range_), buffer_bytes) {}
-    void add(std::uint64_t number, std::span<const float> values) {
-      const auto range = static_cast<std::size_t>(number / range_);
-      ranges_.add(range, number);
-      ranges_.addRun(range, values);
-    }
-    template <class PathOf>
-    void finish(const PathOf& path_of, std::span<const SlimColumn> columns) {
-      ranges_.finish();
-      for (std::size_t c = 0; c < columns.size(); ++c) outofcore::writeFile(path_of(c), {});
-      std::vector<float> values, column;
-      for (std::size_t range = 0; range < ranges_.size(); ++range) {
-        const std::uint64_t first = range * range_, count = std::min(range_, vertices_ - first);
-        values.assign(count * stride_, 0);
-        // A record: the number as two words, and the values.
-        outofcore::RecordReader<std::uint32_t> reader(ranges_.path(range), std::min(buffer_bytes_, kFileBuffer));
-        for (std::array<std::uint32_t, 2> words{}; reader.next(words[0]);) {
-          reader.next(words[1]);
-          const std::uint64_t at = (std::bit_cast<std::uint64_t>(words) - first) * stride_;
-          for (std::size_t i = 0; i < stride_; ++i) {
-            reader.next(words[0]);
-            values[at + i] = std::bit_cast<float>(words[0]);
-          }
-        }
-        outofcore::removeFile(ranges_.path(range));
-        std::size_t at = 0;
-        for (std::size_t c = 0; c < columns.size(); at += columns[c++].components) {
-          const std::size_t n = columns[c].components;
-          column.resize(count * n);
-          for (std::size_t v = 0; v < count; ++v)
-            std::copy_n(values.data() + v * stride_ + at, n, column.data() + v * n);
-          outofcore::appendFile(path_of(c), std::as_bytes(std::span<const float>(column)));
-        }
-      }
-    }
-
-   private:
-    std::uint64_t vertices_;
-    std::size_t stride_;
-    std::uint64_t range_;
-    std::size_t buffer_bytes_;
-    BucketFiles ranges_;
-  };
 
   std::size_t part_;
   std::span<const std::string> results_;
@@ -348,8 +208,7 @@ void writePage(const SortedPart& part, std::span<const Page> pages, const Page& 
 }  // namespace
 
 std::uint64_t sortBytes(std::uint64_t vertices, const VertexLoad& load, std::size_t buffer_bytes) {
-  const std::uint64_t range = load.values == 0 ? 0 : valueRange(vertices, load.values, buffer_bytes / 4);
-  return 2 * buffer_bytes + range * 2 * load.values * sizeof(float) + 3 * kFileBuffer;
+  return 2 * buffer_bytes + ValueSort::rangeBytes(vertices, load.values, buffer_bytes / 4) + 3 * kFileBuffer;
 }
 
 std::uint64_t writtenPageBytes(std::uint64_t vertices, std::uint64_t tets) {

@@ -16,6 +16,8 @@
 #include "libpreprocess/error.h"
 #include "libpreprocess/exchange/mesh_pages.h"
 #include "libpreprocess/qslim4d/cells.h"
+#include "libpreprocess/topology/check_hypermesh.h"
+#include "libpreprocess/topology/links.h"
 #include "tests/hypermesh/extracted_mesh.h"
 #include "tests/hypermesh/memory_frames.h"
 
@@ -76,6 +78,31 @@ inline void balls(const std::string& path, bool parts, const std::vector<NamedFi
     unwrap(writer.close("{}"));
   }
   std::filesystem::remove(plain);
+}
+
+inline const std::vector<NamedField>& fields() {
+  static const std::vector<NamedField> all{
+      {"wave", [](const Vec4f& v) { return std::sin(0.7F * v.x) + 0.3F * v.t; }},
+      {"label", [](const Vec4f& v) { return v.y < 9 ? 3.0F : 12.0F; }},
+      {"holes", [](const Vec4f& v) { return v.z > 12 ? std::nanf("") : v.z; }},
+  };
+  return all;
+}
+inline std::vector<std::uint64_t> targetsOf(const hypermesh::File& file, std::uint64_t part_of) {
+  std::vector<std::uint64_t> targets = tetsByPart(file);
+  for (std::uint64_t& target : targets) target /= part_of;
+  return targets;
+}
+
+inline void expectSound(const hypermesh::File& file) {
+  EXPECT_TRUE(file.verify().ok()) << file.verify().fault().what;
+  outofcore::Progress progress;
+  const topology::HypermeshCheck faces = topology::checkHypermesh(file, progress);
+  EXPECT_TRUE(faces.ok()) << (faces.faults.empty() ? "" : faces.faults[0]);
+  EXPECT_EQ(faces.unused_vertices, 0u);
+  outofcore::MemoryBudget memory;
+  const topology::LinkCheck links = topology::checkLinks(file, memory, progress);
+  EXPECT_TRUE(links.ok()) << (links.faults.empty() ? "" : links.faults[0]);
 }
 
 struct CellMeans {
