@@ -26,7 +26,7 @@ void checkSize(const hypermesh::File& file) {
   throw Error(FaultCode::kBadInput, file.reader().path(), "",
               "has " + std::to_string(header.vertices) + " vertices and " + std::to_string(header.tets) +
                   " tetrahedra, too many to simplify in core (2^32 - 2 and 2^29 + 2^28 - 1)",
-              "simplify it in cells: one part, --columns none, --order passes or multichoice");
+              "simplify it in cells: --order passes or multichoice, and a smaller --cell-tets");
 }
 
 // The numbers a part's vertices get: those of its pages in a row.
