@@ -50,12 +50,15 @@ void printPlan(const hypermesh::File& file, const Options& options, const std::v
                bool in_cells) {
   std::uint64_t vertex_bytes = 32;
   for (const qslim4d::ColumnWish& wish : wishes) vertex_bytes += 4 * file.columns()[wish.column].components;
-  const std::uint64_t passes = in_cells ? 3 : options.max_error ? options.tries.value_or(qslim::kTries) : 1;
+  const std::uint64_t tries = options.max_error ? options.tries.value_or(qslim::kTries) : 1;
+  const std::uint64_t passes = in_cells ? 3 * tries : tries;
   const std::uint64_t memory =
-      in_cells ? qslim4d::boundCellMemory(file, options.cell_tets) : qslim::boundMemory(file, options, wishes);
+      in_cells ? qslim::boundCellMemory(file, options, wishes) : qslim::boundMemory(file, options, wishes);
+  const std::uint64_t disk =
+      in_cells ? qslim4d::boundTemporaryBytes(file, wishes, options.max_error.has_value()) : std::uint64_t{0};
   std::printf("passes %llu\npeak_memory_bytes %llu\ntemporary_bytes %llu\noutput_bytes_at_most %llu\n",
               static_cast<unsigned long long>(passes), static_cast<unsigned long long>(memory),
-              static_cast<unsigned long long>(in_cells ? qslim4d::boundTemporaryBytes(file) : 0),
+              static_cast<unsigned long long>(disk),
               static_cast<unsigned long long>(file.header().tets * 16 + file.header().vertices * vertex_bytes +
                                               (1 + wishes.size()) * (file.geometryPages() + 1) * 512 + 65536));
 }
@@ -68,7 +71,8 @@ std::optional<qslim::Sum> simplifyInCore(cli::Session& session, const hypermesh:
   std::vector<SimplifiedPart> parts =
       qslim::simplifyParts(session, file, options, qslim4d::planColumns(file, wishes, session.progress()));
   if (!parts.empty() && !parts.back().is_kept) {
-    qslim::tellFailure(session, options, parts.back());
+    const SimplifiedPart& part = parts.back();
+    qslim::tellFailure(session, options, part.tries, part.measured, part.estimate);
     return std::nullopt;
   }
   const qslim::Sum sum = qslim::sumOf(parts);
@@ -84,7 +88,7 @@ int slim(cli::Session& session, const Options& options) {
   const hypermesh::File file = unwrap(hypermesh::File::open(options.input));
   session.dependsOn(options.input);
   const std::vector<qslim4d::ColumnWish> wishes = columnWishes(options, file);
-  const std::string why_in_core = qslim::whyInCore(options, file, wishes);
+  const std::string why_in_core = qslim::whyInCore(options);
   const bool in_cells = qslim::isLarge(options, file) && why_in_core.empty();
   if (session.options().dry_run) {
     printPlan(file, options, wishes, in_cells);
@@ -98,8 +102,9 @@ int slim(cli::Session& session, const Options& options) {
     session.note("--temp-dir: what is simplified in core has no temporary files");
   hypermesh::Writer writer = createWriter(session, file, options, wishes);
   const std::string provenance = provenanceOf(session, file);
-  const std::optional<qslim::Sum> sum = in_cells ? qslim::simplifyCells(session, file, options, provenance, writer)
-                                                 : simplifyInCore(session, file, options, wishes, writer);
+  const std::optional<qslim::Sum> sum = in_cells
+                                            ? qslim::simplifyCells(session, file, options, wishes, provenance, writer)
+                                            : simplifyInCore(session, file, options, wishes, writer);
   if (!sum) return cli::kExitFailure;
   if (sum->stalled_tets > 0 && !options.error && !options.max_error) {
     session.warn("no collapse is left that keeps the mesh a manifold without flips: " +
@@ -144,8 +149,8 @@ int main(int argc, char** argv) {
               &o.align_time)
       .option("--max-star", "N", "most tetrahedra at a vertex that a collapse may leave", &o.most_star)
       .option("--cell-tets", "N",
-              "a mesh of more tetrahedra is simplified in cells of at most so many, out of core; in core for all that "
-              "with --order heap, --max-error, --non-manifold keep, columns to carry over, or several parts",
+              "a mesh of more tetrahedra is simplified in cells of at most so many, out of core; with --order heap in "
+              "core for all that",
               &o.cell_tets)
       .option(
           "--non-manifold", "WHAT",

@@ -9,26 +9,9 @@
 #include "formats/core/coordinates.h"
 #include "libpreprocess/exchange/slice_hypermesh.h"
 #include "libpreprocess/measure/slice_measures.h"
+#include "libpreprocess/measure/slice_points.h"
 
 namespace tet4d::measure {
-namespace {
-
-// A slice in the units of the map, relative to the domain's corner: a far origin costs nothing.
-std::vector<Point3> toLengths(const SliceMesh& slice, const SliceFrame& where) {
-  std::vector<Point3> points;
-  points.reserve(slice.positions.size());
-  const auto& [map, corner] = where;
-  for (const Vec3f& p : slice.positions) {
-    const std::array<double, 3> index{p.x - corner[0], p.y - corner[1], p.z - corner[2]};
-    Point3 world{};
-    for (std::size_t c = 0; c < 3; ++c)
-      world[c] = index[0] * map.axes[0][c] + index[1] * map.axes[1][c] + index[2] * map.axes[2][c];
-    points.push_back(world);
-  }
-  return points;
-}
-
-}  // namespace
 
 std::vector<double> sampleFrames(const hypermesh::File& reference, std::size_t count) {
   const double first = reference.header().domain.min.t, last = reference.header().domain.max.t;
@@ -86,12 +69,13 @@ SliceDistance compareSlices(const SliceSource& mesh, const SliceSource& referenc
   progress.phase("measure", frames.size());
   for (const double frame : frames) {
     const SliceMesh a = mesh(frame), b = reference(frame);
-    const std::vector<Point3> pa = toLengths(a, where), pb = toLengths(b, where);
+    const std::vector<Point3> pa = slicePoints(a, where.map, where.corner),
+                              pb = slicePoints(b, where.map, where.corner);
     const SurfaceDistance d = surfaceDistance({pa, a.triangles}, {pb, b.triangles}, options, executor);
     SliceDifference slice{frame, d.rms(), d.p99(), d.max(), 0, 0, a.triangles.size(), b.triangles.size()};
     const SliceMeasures ma = measureSlice(a.positions, a.triangles, where.map);
     const SliceMeasures mb = measureSlice(b.positions, b.triangles, where.map);
-    if (ma.closed() && mb.closed()) {
+    if (ma.bounds() && mb.bounds()) {
       slice.volume = ma.volume, slice.volume_reference = mb.volume;
       largest_volume = std::max(largest_volume, std::abs(mb.volume));
       largest_volume_error = std::max(largest_volume_error, std::abs(ma.volume - mb.volume));

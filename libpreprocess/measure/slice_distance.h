@@ -19,7 +19,7 @@ namespace tet4d::measure {
 struct SliceDifference {
   double frame = 0;
   double rms = 0, p99 = 0, max = 0;         // symmetric: the worse of both ways
-  double volume = 0, volume_reference = 0;  // enclosed, where the slices are closed
+  double volume = 0, volume_reference = 0;  // enclosed, where both slices bound one (SliceMeasures::bounds)
   std::uint64_t triangles = 0, triangles_reference = 0;
 };
 
@@ -58,8 +58,8 @@ struct SliceFrame {
   AffineMap map;
   std::array<double, 3> corner{};
 };
-// Compares slices from anywhere. Volumes are compared where both slices are closed: volume_error is 0 if none are, and
-// SliceDifference::volume_reference tells which were.
+// Compares slices from anywhere. Volumes are compared where both slices bound one: volume_error is 0 if none do, and
+// SliceDifference::volume_reference tells which did.
 SliceDistance compareSlices(const SliceSource& mesh, const SliceSource& reference, const SliceFrame& where,
                             const std::vector<double>& frames, const DistanceOptions& options,
                             outofcore::Executor& executor, outofcore::Progress& progress);

@@ -43,6 +43,7 @@ void countEdges(std::span<const Triangle> triangles, SliceMeasures& result) {
     if (uses == 1) ++result.boundary_edges;
     if (uses == 2 && forward != 1) ++result.misoriented_edges;
     if (uses > 2) ++result.edges_over_two;
+    if (2 * forward != uses) ++result.unbalanced_edges;
   }
 }
 

@@ -103,6 +103,12 @@ class BucketFiles {
     static_assert(std::is_trivially_copyable_v<T>);
     addBytes(bucket, std::as_bytes(std::span(&record, 1)));
   }
+  // A record whose size only the run knows: as many bytes as each time before, for whoever reads it.
+  template <class T>
+  void addRun(std::size_t bucket, std::span<const T> run) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    addBytes(bucket, std::as_bytes(run));
+  }
   // Writes what is still in the buffers and frees them.
   void finish();
 

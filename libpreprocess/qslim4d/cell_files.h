@@ -1,8 +1,8 @@
 // Cells of a mesh that is simplified out of core, as temporary files: what scatter() writes for a cell, what a cell's
 // simplification leaves. Private to qslim4d.
 //
-// Vertices keep the numbers they have in the input. A vertex that several cells use stands in each of them, and its
-// quadric in parts whose sum is the whole.
+// Vertices keep the numbers they have in the input. A vertex that several cells use stands in each of them, with its
+// values of columns, and its quadric and what columns have in the metric in parts whose sum is the whole.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 
 #include "formats/hypermesh.h"
 #include "libpreprocess/outofcore/work_folder.h"
+#include "libpreprocess/qslim4d/non_manifold.h"
 #include "libpreprocess/qslim4d/simplify.h"
 
 namespace tet4d::qslim4d {
@@ -29,15 +30,33 @@ struct CellQuadric {
 };
 static_assert(sizeof(CellVertex) == 32 && sizeof(CellQuadric) == 136);
 
+// What a vertex carries beside its place, as runs of numbers: values of its columns in their order; and for what is in
+// the metric the quadric of Columns::squares and the AttributeTerms of Columns::sums.
+struct VertexLoad {
+  std::size_t values = 0;  // floats
+  std::size_t sums = 0;    // doubles; 0: no column is in the metric
+  std::uint64_t bytes() const { return values * sizeof(float) + sums * sizeof(double); }
+};
+VertexLoad loadOf(std::span<const SlimColumn> columns);
+
+// Which part of a file is simplified, and in which of its tries under a promise; 0 where there is one only.
+struct PartTry {
+  std::size_t part = 0, number = 0;
+  std::string suffix() const;  // of lines in the journal and names of files; empty for the first of the first
+};
+
 // Files of one sweep in the work folder. Before a cell is simplified it has vertices, in slots that its tetrahedra name
-// (a vertex may have several), quadrics, and the numbers of vertices that other cells use too; afterwards a result.
+// (a vertex may have several), their values, quadrics, sums beside each of these, and the numbers of vertices that
+// other cells use too; afterwards a result.
 class CellPaths {
  public:
-  CellPaths(const outofcore::WorkFolder& folder, std::size_t sweep)
-      : prefix_(folder.file("sweep" + std::to_string(sweep) + ".")) {}
+  CellPaths(const outofcore::WorkFolder& folder, std::size_t sweep, const PartTry& which = {})
+      : prefix_(folder.file("sweep" + std::to_string(sweep) + which.suffix() + ".")) {}
   std::string plan() const { return prefix_ + "plan"; }
   std::string vertices() const { return prefix_ + "vertices"; }  // prefixes of BucketFiles
+  std::string values() const { return prefix_ + "values"; }
   std::string tets() const { return prefix_ + "tets"; }
+  std::string sums() const { return prefix_ + "sums"; }
   std::string quadrics() const { return prefix_ + "quadrics"; }
   std::string shared() const { return prefix_ + "shared"; }
   std::string users() const { return prefix_ + "users"; }
@@ -54,11 +73,13 @@ struct LoadedCell {
   std::vector<std::uint8_t> flags;  // kLocked, kUncounted
   std::vector<Quadric> quadrics;    // empty in the first sweep
   std::vector<hypermesh::Tet> tets;
+  Columns columns;  // sums and squares as the quadrics
 };
 
-// with_quadrics: there are any. O(cell log cell).
-LoadedCell loadCell(const CellPaths& paths, std::size_t cell, bool with_quadrics);
-// What loading and holding it takes, before makeSlimMesh().
+// with_quadrics: there are any, and sums. columns: those that vertices carry, without values. O(cell log cell).
+LoadedCell loadCell(const CellPaths& paths, std::size_t cell, bool with_quadrics,
+                    std::span<const SlimColumn> columns = {});
+// What loading and holding it takes, before makeSlimMesh(), but for columns.
 std::uint64_t loadBytes(std::uint64_t slots, std::uint64_t tets);
 void removeCell(const CellPaths& paths, std::size_t cell);
 
@@ -67,6 +88,8 @@ struct ResultHeader {
   std::uint64_t vertices, tets;
   std::uint64_t tets_in;
   double free_share;  // of its vertices: not locked
+  VertexLoad load;
+  NonManifold non_manifold;  // found for the first time
   Stats stats;
 };
 
@@ -76,13 +99,15 @@ struct Piece {
   std::span<const Vec4f> positions;
   std::span<const std::uint8_t> flags;  // kUncounted; empty: a page of the input
   std::span<const Quadric> quadrics;    // as the flags
+  std::span<const float> values;        // VertexLoad::values for each vertex
+  std::span<const double> sums;         // VertexLoad::sums for each vertex, where there are quadrics
   std::span<const hypermesh::Tet> tets;
   double expected = 1;  // how many should be left in the end for each tetrahedron
 };
 
 // ids: of the vertices of `mesh`. first: it was the first sweep.
 void writeResult(const std::string& path, const SlimMesh& mesh, std::span<const std::uint64_t> ids, bool first,
-                 const Stats& stats);
+                 const Stats& stats, const NonManifold& found = {});
 ResultHeader readResultHeader(const std::string& path);
 
 // Memory of the result; the spans of piece() point into it.
@@ -91,12 +116,15 @@ struct CellResult {
   std::vector<std::uint64_t> ids;
   std::vector<Vec4f> positions;
   std::vector<std::uint8_t> flags;
+  std::vector<float> values;
   std::vector<Quadric> quadrics;
+  std::vector<double> sums;
   std::vector<hypermesh::Tet> tets;
-  Piece piece(double expected) const { return {ids, positions, flags, quadrics, tets, expected}; }
+  Piece piece(double expected) const { return {ids, positions, flags, quadrics, values, sums, tets, expected}; }
 };
-// with_quadrics: else they are left out.
-CellResult readResult(const std::string& path, bool with_quadrics);
+// What is read of a result: the mesh alone, with its values, or all.
+enum class ResultWants { kMesh, kValues, kAll };
+CellResult readResult(const std::string& path, ResultWants wants);
 
 // Pieces that are visited one after the other, in an order that is always the same.
 using VisitPiece = std::function<void(const Piece&)>;

@@ -12,6 +12,7 @@
 #include "libpreprocess/outofcore/huge_pages.h"
 #include "libpreprocess/qslim4d/attributes.h"
 #include "libpreprocess/qslim4d/orders.h"
+#include "libpreprocess/qslim4d/part_pages.h"
 
 namespace tet4d::qslim4d {
 namespace {
@@ -25,34 +26,19 @@ void checkSize(const hypermesh::File& file) {
   throw Error(FaultCode::kBadInput, file.reader().path(), "",
               "has " + std::to_string(header.vertices) + " vertices and " + std::to_string(header.tets) +
                   " tetrahedra, too many to simplify in core (2^32 - 2 and 2^29 + 2^28 - 1)",
-              "simplify it in cells: one part, --columns none, --order passes or multichoice");
+              "simplify it in cells: --order passes or multichoice, and a smaller --cell-tets");
 }
 
 // The numbers a part's vertices get: those of its pages in a row.
 class PartNumbers {
  public:
-  PartNumbers(const hypermesh::File& file, std::uint64_t part) {
-    std::uint64_t first = 0, tets = 0;
-    const auto fail = [&](std::size_t page, const std::string& what) {
-      throw Error(FaultCode::kBadInput, file.reader().path(), "page " + std::to_string(page), what,
-                  "make the file again");
-    };
-    for (std::size_t k = 0; k < file.geometryPages(); ++k) {
+  PartNumbers(const hypermesh::File& file, const PartPages& parts, std::size_t part) : pages_(parts.pages(part)) {
+    for (const std::size_t k : pages_) {
       const auto& counts = file.geometryEntry(k).counts;
-      if (counts[0] != first)
-        fail(k, "its first vertex is " + std::to_string(counts[0]) + ", expected " + std::to_string(first));
-      first += counts[1], tets += counts[2];
-      if (!file.parts().empty() && unwrap(file.partOf(k)) != part) continue;
-      pages_.push_back(k);
       ranges_.push_back({counts[0], counts[1], vertices_});
-      vertices_ += counts[1], tets_ += counts[2];
+      vertices_ += counts[1];
     }
-    // Before anything is reserved by these numbers.
-    if (first != file.header().vertices || tets != file.header().tets) {
-      fail(file.geometryPages(), "the pages hold " + std::to_string(first) + " vertices and " + std::to_string(tets) +
-                                     " tetrahedra, the header tells of " + std::to_string(file.header().vertices) +
-                                     " and " + std::to_string(file.header().tets));
-    }
+    tets_ = parts.tets(part);
   }
   const std::vector<std::size_t>& pages() const { return pages_; }
   std::uint64_t vertices() const { return vertices_; }
@@ -69,7 +55,7 @@ class PartNumbers {
   struct Range {
     std::uint64_t first, count, local;
   };
-  std::vector<std::size_t> pages_;
+  const std::vector<std::size_t>& pages_;
   std::vector<Range> ranges_;
   std::uint64_t vertices_ = 0, tets_ = 0;
 };
@@ -183,7 +169,8 @@ std::vector<PlannedColumn> planColumns(const hypermesh::File& file, std::span<co
 SlimMesh readMesh(const hypermesh::File& file, const ReadOptions& options, outofcore::Progress& progress,
                   NonManifold* found) {
   checkSize(file);
-  const PartNumbers numbers(file, options.part);
+  const PartPages parts(file);
+  const PartNumbers numbers(file, parts, options.part);
   progress.phase("read", numbers.pages().size());
   Arrays arrays = readPages(file, numbers, options.columns, progress);
   try {

@@ -89,14 +89,15 @@ class Link {
 
 }  // namespace
 
-NonManifold lockNonManifold(SlimMesh& mesh) {
+NonManifold lockNonManifold(SlimMesh& mesh, bool first) {
   NonManifold found;
   Link link;
   for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    if (!mesh.isUsed(v)) continue;
+    if (!mesh.isUsed(v) || (mesh.is_boundary[v] & kLocked) != 0) continue;
     link.read(mesh, v);
     if (link.isSphereOrDisc()) continue;
-    mesh.is_boundary[v] |= kLocked;
+    mesh.is_boundary[v] |= kLocked | kPinned;
+    if (!first && (mesh.is_boundary[v] & kUncounted) == 0) continue;
     ++found.vertices;
     found.triangles += link.crowdedAbove(v);
   }

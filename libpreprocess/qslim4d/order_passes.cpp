@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -57,6 +58,23 @@ class CostHistogram {
   std::uint64_t total_ = 0;
 };
 
+// A power of two that brings costs near 1: they are kept as float32, and a mesh may be measured in units of 1e-12 or
+// 1e12. No order and no result changes where they would have had room anyway.
+double costUnit(const SlimMesh& mesh) {
+  const std::size_t stride = mesh.tets.size() / 4096 + 1;
+  double weights = 0, lengths2 = 0;
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); t += stride) {
+    const hypermesh::Tet& tet = mesh.tets[t];
+    if (tet[0] == kNone) continue;
+    const double length = mesh.space.extent(difference(mesh.positions[tet[1]], mesh.positions[tet[0]]));
+    weights += mesh.quadrics[tet[0]].weight, lengths2 += length * length;
+    ++count;
+  }
+  const double typical = count > 0 ? weights / static_cast<double>(count) * (lengths2 / static_cast<double>(count)) : 0;
+  return std::isnormal(typical) ? std::exp2(-std::ilogb(typical)) : 1;
+}
+
 class Passes {
  public:
   Passes(SlimMesh& mesh, const Options& options, outofcore::Executor& executor, Ledger& ledger)
@@ -64,6 +82,7 @@ class Passes {
         options_(options),
         executor_(executor),
         ledger_(ledger),
+        cost_unit_(costUnit(mesh)),
         claimed_(mesh.positions.size(), 0),
         merged_(mesh.positions.size(), 0),
         touched_(mesh.positions.size(), kTouched) {}
@@ -104,7 +123,7 @@ class Passes {
   float costOf(const Collapser& collapser, std::uint32_t u, std::uint32_t v) const {
     Placement placement;
     if (!collapser.evaluate(u, v, placement) || !ledger_.isAllowed(placement)) return kNever;
-    return static_cast<float>(placement.cost) + 0.0F;  // not -0, whose bits come last
+    return static_cast<float>(placement.cost * cost_unit_) + 0.0F;  // not -0, whose bits come last
   }
 
   // Whether the edge may be worth a place on the list, if it is dearer than known(): it has not been refused as things
@@ -306,6 +325,7 @@ class Passes {
   const Options& options_;
   outofcore::Executor& executor_;
   Ledger& ledger_;
+  double cost_unit_;
   BlockList<Edge> edges_;
   float least_ = -1;                    // no edge of this cost or less was put on the list
   float most_listed_ = 0;               // no edge dearer than this is on the list

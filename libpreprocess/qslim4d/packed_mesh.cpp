@@ -18,16 +18,19 @@ struct Page {
   Bounds4f bounds;
 };
 
-// The end of the page that begins with vertex `begin`: whole frames, enough of them.
+// The end of the page that begins with vertex `begin`: whole frames, enough of them and not too many.
 std::size_t pageEnd(const PackedMesh& packed, std::size_t begin) {
+  const auto tetsUntil = [&](std::size_t end) { return packed.first_tet[end] - packed.first_tet[begin]; };
+  const std::size_t last = std::min(packed.vertices.size(), begin + kMostPageItems);
   std::size_t end = begin;
-  while (end < packed.vertices.size()) {
+  while (end < last) {
     const float frame = std::floor(packed.vertices[end].t);
-    while (end < packed.vertices.size() && std::floor(packed.vertices[end].t) == frame) ++end;
-    if (packed.first_tet[end] - packed.first_tet[begin] >= kLeastPageTets) break;
+    for (; end < last && std::floor(packed.vertices[end].t) == frame; ++end)
+      if (end > begin && tetsUntil(end + 1) > kMostPageItems) return end;
+    if (tetsUntil(end) >= kLeastPageTets) break;
   }
   // What follows without a tetrahedron of its own belongs here too.
-  return packed.first_tet[end] == packed.tets.size() ? packed.vertices.size() : end;
+  return packed.first_tet[end] == packed.tets.size() ? last : end;
 }
 
 std::span<const hypermesh::Tet> tetsOf(const PackedMesh& packed, const Page& page) {
@@ -41,8 +44,10 @@ std::vector<Page> planPages(std::span<const PackedMesh> parts) {
     const PackedMesh& packed = parts[part];
     for (std::size_t begin = 0; begin < packed.vertices.size();) {
       Page page{part, begin, pageEnd(packed, begin), 0, {}};
-      for (const hypermesh::Tet& tet : tetsOf(packed, page))
+      const auto tets = tetsOf(packed, page);
+      for (const hypermesh::Tet& tet : tets)
         for (const std::uint32_t v : tet) page.bounds.add(packed.vertices[v]);
+      for (std::size_t v = page.begin; v < page.end && tets.empty(); ++v) page.bounds.add(packed.vertices[v]);
       begin = page.end;
       pages.push_back(page);
     }

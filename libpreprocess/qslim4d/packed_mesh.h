@@ -12,6 +12,9 @@
 namespace tet4d::qslim4d {
 
 inline constexpr std::size_t kLeastPageTets = 16384;  // frames are joined until a page has so many
+// A page is cut within a frame where else it would have more tetrahedra, or vertices of its own, than this: where
+// little moves, most of a mesh begins in one frame.
+inline constexpr std::size_t kMostPageItems = std::size_t{1} << 19;
 
 // The mesh without what is dead: vertices by time, tetrahedra by their first vertex.
 struct PackedMesh {
@@ -29,9 +32,9 @@ PackedMesh pack(SlimMesh mesh);
 // Bytes that pack() and writeMeshes() hold at most of a mesh that had so many vertices and tetrahedra.
 std::uint64_t packBytes(std::uint64_t vertices, std::uint64_t tets);
 
-// Writes the parts of a file (phase "write"), one for a file without parts: a page for one frame of a part or for
-// several that have little, pages of all parts by their first time. The writer has as many columns as each part and is
-// not closed. Fewer than 2^32 vertices in all.
+// Writes the parts of a file (phase "write"), one for a file without parts: a page for one frame of a part, for
+// several that have little, or for some of one that has much; pages of all parts by their first time. The writer has as
+// many columns as each part and is not closed. Fewer than 2^32 vertices in all.
 void writeMeshes(std::span<const PackedMesh> parts, hypermesh::Writer& writer, outofcore::Progress& progress);
 
 // As above for a mesh that is the whole file; error_world: of the simplification, estimated.

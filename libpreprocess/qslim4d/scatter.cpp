@@ -37,16 +37,19 @@ FixedPlace sumOf(const FixedGrid& grid, const Piece& piece, const hypermesh::Tet
 
 class Scatter {
  public:
-  Scatter(const CellTree& tree, const FixedGrid& grid, std::uint64_t vertex_ids, const CellPaths& paths,
-          std::size_t buffer_bytes)
+  Scatter(const CellTree& tree, const FixedGrid& grid, std::uint64_t vertex_ids, const VertexLoad& load,
+          const CellPaths& paths, std::size_t buffer_bytes)
       : tree_(tree),
         grid_(grid),
+        load_(load),
         range_(rangeOf(vertex_ids)),
         sizes_(tree.cells()),
-        vertices_(paths.vertices(), tree.cells(), buffer_bytes / 4),
-        tets_(paths.tets(), tree.cells(), buffer_bytes / 4),
-        quadrics_(paths.quadrics(), tree.cells(), buffer_bytes / 4),
-        users_(paths.users(), static_cast<std::size_t>((vertex_ids + range_ - 1) / range_), buffer_bytes / 4) {
+        vertices_(paths.vertices(), tree.cells(), buffer_bytes / 6),
+        values_(paths.values(), load.values > 0 ? tree.cells() : 0, buffer_bytes / 6),
+        tets_(paths.tets(), tree.cells(), buffer_bytes / 6),
+        quadrics_(paths.quadrics(), tree.cells(), buffer_bytes / 6),
+        sums_(paths.sums(), load.sums > 0 ? tree.cells() : 0, buffer_bytes / 6),
+        users_(paths.users(), static_cast<std::size_t>((vertex_ids + range_ - 1) / range_), buffer_bytes / 6) {
     if (range_ > kNone) throw Error(FaultCode::kBadInput, "", "", "has more than 2^42 vertices", "crop it");
   }
 
@@ -71,7 +74,7 @@ class Scatter {
   }
 
   std::vector<CellSize> finish(const CellPaths& paths, std::size_t buffer_bytes) {
-    vertices_.finish(), tets_.finish(), quadrics_.finish(), users_.finish();
+    vertices_.finish(), values_.finish(), tets_.finish(), quadrics_.finish(), sums_.finish(), users_.finish();
     release(order_), release(cell_), release(user_), release(slot_), release(given_);
     BucketFiles shared(paths.shared(), tree_.cells(), buffer_bytes / 2);
     for (std::size_t range = 0; range < users_.size(); ++range) {
@@ -112,11 +115,17 @@ class Scatter {
     user_[v] = cell;
     slot_[v] = static_cast<std::uint32_t>(sizes_[cell].slots++);
     vertices_.add(cell, CellVertex{id, piece.positions[v], piece.flags.empty() ? 0U : piece.flags[v], 0});
+    if (load_.values > 0) values_.addRun(cell, piece.values.subspan(v * load_.values, load_.values));
     users_.add(static_cast<std::size_t>(id / range_), User{static_cast<std::uint32_t>(id % range_), cell});
     if (!piece.quadrics.empty() && given_[v] == 0) {
-      quadrics_.add(cell, CellQuadric{id, piece.quadrics[v]});
+      addQuadric(piece, v, cell);
       given_[v] = 1;
     }
+  }
+
+  void addQuadric(const Piece& piece, std::size_t v, std::uint32_t cell) {
+    quadrics_.add(cell, CellQuadric{piece.ids[v], piece.quadrics[v]});
+    if (load_.sums > 0) sums_.addRun(cell, piece.sums.subspan(v * load_.sums, load_.sums));
   }
 
   // Quadrics of vertices whose tetrahedra are all in other pieces go where the vertex lies.
@@ -125,7 +134,7 @@ class Scatter {
       if (given_[v] != 0) continue;
       FixedPlace sum = grid_.placeOf(piece.positions[v]);
       for (std::int64_t& along : sum) along *= 4;
-      quadrics_.add(tree_.cellOf(sum), CellQuadric{piece.ids[v], piece.quadrics[v]});
+      addQuadric(piece, v, tree_.cellOf(sum));
     }
   }
 
@@ -151,9 +160,10 @@ class Scatter {
 
   const CellTree& tree_;
   const FixedGrid& grid_;
+  VertexLoad load_;
   std::uint64_t range_;
   std::vector<CellSize> sizes_;
-  BucketFiles vertices_, tets_, quadrics_, users_;
+  BucketFiles vertices_, values_, tets_, quadrics_, sums_, users_;
   // Of the piece in hand: by tetrahedron its cell, and their order; by vertex the cell that used it last, its slot
   // there, and whether its quadric is given away.
   std::vector<std::uint32_t> order_, cell_, user_, slot_;
@@ -165,8 +175,9 @@ class Scatter {
 std::uint64_t rangeBytes(std::uint64_t vertex_ids) { return rangeOf(vertex_ids) * sizeof(std::uint32_t); }
 
 std::vector<CellSize> scatter(const PieceSource& source, const CellTree& tree, const FixedGrid& grid,
-                              std::uint64_t vertex_ids, const CellPaths& paths, std::size_t buffer_bytes) {
-  Scatter all(tree, grid, vertex_ids, paths, buffer_bytes);
+                              std::uint64_t vertex_ids, const VertexLoad& load, const CellPaths& paths,
+                              std::size_t buffer_bytes) {
+  Scatter all(tree, grid, vertex_ids, load, paths, buffer_bytes);
   source([&](const Piece& piece) { all.add(piece); });
   return all.finish(paths, buffer_bytes);
 }

@@ -21,8 +21,10 @@ std::uint64_t rangeBytes(std::uint64_t vertex_ids);
 
 // Writes the files of `paths` for every cell of the tree: one pass over the source, and one over the numbers of the
 // vertices it uses, which are below `vertex_ids`. Memory: a piece with about 24 bytes for each of its tetrahedra and
-// vertices, and `buffer_bytes` or a little more. A vertex's quadric goes to the first of a piece's cells that uses it.
+// vertices, and `buffer_bytes` or a little more. A vertex's values go to all cells that use it, its quadric and sums to
+// the first of a piece's cells that does.
 std::vector<CellSize> scatter(const PieceSource& source, const CellTree& tree, const FixedGrid& grid,
-                              std::uint64_t vertex_ids, const CellPaths& paths, std::size_t buffer_bytes);
+                              std::uint64_t vertex_ids, const VertexLoad& load, const CellPaths& paths,
+                              std::size_t buffer_bytes);
 
 }  // namespace tet4d::qslim4d

@@ -38,6 +38,7 @@ enum VertexFlags : std::uint8_t {
   kOnBoundary = 1,  // it lies in a triangle of one tetrahedron
   kLocked = 2,      // it keeps its place, and no edge at it is collapsed
   kUncounted = 4,   // it was locked whenever free boundaries were looked for so far
+  kPinned = 8,      // locked because the mesh is no manifold there
 };
 
 // An empty list in place of `items`, whose memory goes back; assigning {} would keep it.

@@ -33,6 +33,23 @@ def run(*command, limit=None):
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
+def with_columns(programs, work):
+    """Two parts with columns, one in the metric, through a fraction of their size."""
+    mesh, limit = work / "loaded.t4h", 2 * LITTLE_BYTES
+    run(programs / "tet4d-mc", work / "blobs.nrrd", "--iso", "0.5,0.9", "--normals", "gradient", "--velocity", "-q", "-o", mesh)
+    slim = [programs / "hyper-qslim", mesh, "--ratio", 0.1, "-q", "--attributes", "velocity", "--cell-tets", 100_000, "--measure", 0]
+    run(*slim, "-j", 2, "-o", work / "loaded-free.t4h")
+    run(*slim, "-j", 1, "-o", work / "loaded-little.t4h", "--memory", int(0.8 * limit), limit=limit)
+    assert (work / "loaded-free.t4h").read_bytes() == (work / "loaded-little.t4h").read_bytes(), "other bytes with columns"
+    size = mesh.stat().st_size
+    assert size > 2 * limit, size
+    verdict = subprocess.run([programs / "tet4d-info", "--validate", "--links", "--json", work / "loaded-free.t4h"], check=True,
+                             capture_output=True)
+    verdict = json.loads(verdict.stdout)
+    assert verdict["valid"] is True and len(verdict["parts"]) == 2 and len(verdict["columns"]) == 2, verdict
+    return f"{size} bytes with columns and two parts through {limit}"
+
+
 def main():
     programs, work = map(pathlib.Path, sys.argv[1:])
     shutil.rmtree(work, ignore_errors=True)
@@ -69,9 +86,10 @@ def main():
                                  capture_output=True)
         verdict = json.loads(verdict.stdout)
         assert verdict["valid"] is True and 0.09 * tets_in < verdict["counts"]["tets"] <= 0.1 * tets_in, verdict
+    loaded = with_columns(programs, work)
     print(f"{tets_in} tetrahedra, in core {whole['anonymous_bytes']} bytes and {seconds_whole:.1f} s of CPU, rms "
           f"{whole['error']['slice_rms_world']:.4f}; in cells with a data limit of {limit} bytes {seconds:.1f} s, rms "
-          f"{stats('free.json')['error']['slice_rms_world']:.4f}; {mesh.stat().st_size} bytes of input through {LITTLE_BYTES}")
+          f"{stats('free.json')['error']['slice_rms_world']:.4f}; {mesh.stat().st_size} bytes of input through {LITTLE_BYTES}; {loaded}")
     shutil.rmtree(work)
 
 

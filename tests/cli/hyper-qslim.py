@@ -37,6 +37,23 @@ def check_parts(result):
     assert three["counts"]["tets"] <= 0.2 * one["counts"]["tets"]
 
 
+def check_cells_promise(result):
+    record = stats(result, "s.json")
+    error, counts = record["error"], record["counts"]
+    assert 0 < error["confirmed_bound_world"] <= error["promised_world"] == 0.02, error
+    assert counts["cells_of_sweep_1"] >= 4 and 1 <= counts["tries"] <= 4, counts
+    assert error["slice_max_world"] <= error["promised_world"]
+
+
+# A ball that stands still is equally far from its result everywhere: the search for the largest distance must end.
+def check_still(result):
+    record = stats(result, "s.json")
+    error = record["error"]
+    assert 0 < error["slice_rms_world"] <= error["slice_p99_world"] <= error["slice_max_world"] < 1, error
+    seconds = {phase["name"]: phase["seconds_cpu"] for phase in record["phases"]}
+    assert seconds["measure"] < 20, seconds
+
+
 # A ball that moves, 24 frames of 48^3.
 BALL = """python3 - <<'END'
 import array
@@ -55,6 +72,11 @@ INTERRUPT = """hyper-qslim {} & shell=$!
 until grep -q '^cell 0 ' x.t4h.cells/journal 2>/dev/null; do kill -0 $shell; sleep 0.01; done
 kill -TERM $(cat /proc/$shell/task/$shell/children); code=0; wait $shell || code=$?; test $code = 1; test ! -e x.t4h; """
 CELLS = "dam.t4h --ratio 0.2 --cell-tets 8000 --measure 0 -q"
+# The same killed at once when the journal has so many lines, each run going on with what the one before left.
+KILL = """for n in 2 5 9 14 20 27; do hyper-qslim {} --resume -o x.t4h & shell=$!
+until test "$(cat x.t4h.cells/journal 2>/dev/null | wc -l)" -ge $n; do kill -0 $shell 2>/dev/null || break; sleep 0.005; done
+kill -KILL $(cat /proc/$shell/task/$shell/children 2>/dev/null) 2>/dev/null || true; wait $shell || true; rm -f x.t4h.partial-*; done; """
+TWO = "tet4d-mc {data}/dambreak/alpha_00{08,09,10}.nrrd --iso 0.3,0.7 --stride 2 --normals gradient --velocity -q -o two.t4h; "
 
 CASES = [
     {
@@ -251,5 +273,79 @@ CASES = [
         "shell": DAM + "hyper-qslim dam.t4h --ratio 0.5 --resume --temp-dir . --measure 0 -o x.t4h",
         "stderr": ["--resume: what is simplified in core", "--temp-dir: what is simplified in core"],
         "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "cells: parts, columns and the metric's, the same bytes for any threads and with little memory as a hard limit",
+        "shell": TWO + "q='two.t4h --ratio 0.2 --attributes velocity --cell-tets 4000 --measure 0 -q'; hyper-qslim $q -j 1 -o one.t4h; "
+        "plan=$(hyper-qslim $q -n -o x.t4h | awk '/^peak_memory_bytes/ { print $2 }'); hyper-qslim $q -j 3 -o three.t4h; cmp one.t4h three.t4h; "
+        "(ulimit -d $((plan / 1024 + 4096)); hyper-qslim $q -j 1 --memory $plan -o little.t4h); cmp one.t4h little.t4h; "
+        "tet4d-info --validate --links --json one.t4h",
+        "json": {"valid": True, "columns.0.name": "normal", "columns.1.name": "velocity", "parts.1.isovalue": 0.7},
+        "absent": ["one.t4h.cells"],
+        "needs": ["tet4d-mc", "tet4d-info"],
+        "timeout": 300,
+    },
+    {
+        "name": "cells: a promise is kept, measured from files page by page",
+        "shell": COLUMNS + "hyper-qslim dam.t4h --max-error 0.02 --tries 4 --cell-tets 3000 --measure 3 -q -o x.t4h --stats s.json; "
+        "tet4d-info --validate --links --json x.t4h",
+        "json": {"valid": True},
+        "check": check_cells_promise,
+        "absent": ["x.t4h.cells"],
+        "needs": ["tet4d-mc", "tet4d-info"],
+        "timeout": 300,
+    },
+    {
+        "name": "cells: a promise that cannot be kept fails and writes nothing",
+        "shell": COLUMNS + "hyper-qslim dam.t4h --max-error 1e-9 --tries 2 --cell-tets 9000 -o x.t4h --stats s.json",
+        "exit": 1,
+        "stderr": ["2 tries did not come to 1e-09", "nothing is written"],
+        "absent": ["x.t4h", "x.t4h.cells"],
+        "needs": ["tet4d-mc"],
+        "timeout": 300,
+    },
+    {
+        "name": "cells: --non-manifold keep looks for such places in cells",
+        "shell": DAM + f"hyper-qslim {CELLS.replace(' -q', '')} --non-manifold keep -o x.t4h",
+        "stderr": ["cells to", "left as they are: 0 triangles"],
+        "not_stderr": ["in core"],
+        "absent": ["x.t4h.cells"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "the heap is in core whatever --cell-tets, and says so",
+        "shell": DAM + "hyper-qslim dam.t4h --ratio 0.8 --order heap --cell-tets 8000 --measure 0 -o x.t4h",
+        "stderr": ["more than --cell-tets, and yet in core", "the heap has one order"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "cells: killed at any point, --resume goes on to the same bytes",
+        "shell": DAM + f"hyper-qslim {CELLS} -j 1 -o whole.t4h; " + KILL.format(CELLS + " -j 1")
+        + f"test -e x.t4h || hyper-qslim {CELLS} -j 2 --resume -o x.t4h; cmp whole.t4h x.t4h",
+        "absent": ["x.t4h.cells"],
+        "needs": ["tet4d-mc"],
+        "timeout": 300,
+    },
+    {
+        "name": "cells: --resume where nothing was left begins anew and says so",
+        "shell": DAM + f"hyper-qslim {CELLS.replace(' -q', '')} --resume -o x.t4h",
+        "stderr": ["--resume: nothing was left of an interrupted run"],
+        "absent": ["x.t4h.cells"],
+        "needs": ["tet4d-mc"],
+    },
+    {
+        "name": "a ball that stands still is measured in bounded time",
+        "shell": BALL.replace("0.4 * k", "0").replace("0.1 * k", "0") + "hyper-qslim ball.t4h --ratio 0.02 --measure 3 -q -o x.t4h --stats s.json",
+        "check": check_still,
+        "needs": ["tet4d-mc"],
+        "timeout": 300,
+    },
+    {
+        "name": "a measurement that does not fit into memory is a warning: the result is there",
+        "shell": DAM + "q='dam.t4h --ratio 0.2 -j 1'; plan=$(hyper-qslim $q -n -o x.t4h | awk '/^peak_memory_bytes/ { print $2 }'); "
+        "hyper-qslim $q --memory $plan -o x.t4h; tet4d-info --validate --json x.t4h",
+        "json": {"valid": True},
+        "stderr": ["the result is written, but not measured", "--memory", "--measure 0 leaves that out"],
+        "needs": ["tet4d-mc", "tet4d-info"],
     },
 ]

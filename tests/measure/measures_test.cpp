@@ -172,6 +172,24 @@ TEST(SliceMeasures, ACube) {
   EXPECT_TRUE(measureSlice({}, {}).closed());
 }
 
+// A sheet laid upon itself bounds nothing and changes no volume, where it is alone or where it touches.
+TEST(SliceMeasures, SheetsUponEachOtherStillBoundTheVolume) {
+  auto corners = testing::cubeCorners();
+  auto triangles = testing::cubeTriangles();
+  const auto far = static_cast<std::uint32_t>(corners.size());
+  corners.push_back({7, 8, 9});
+  triangles.push_back({triangles[0][0], triangles[0][1], far});
+  triangles.push_back({triangles[0][1], triangles[0][0], far});
+  const SliceMeasures folded = measureSlice(corners, triangles);
+  EXPECT_FALSE(folded.closed());
+  EXPECT_EQ(folded.edges_over_two, 1u);
+  EXPECT_TRUE(folded.bounds());
+  EXPECT_NEAR(folded.volume, 8, 1e-12);
+  triangles.pop_back();
+  EXPECT_EQ(measureSlice(corners, triangles).unbalanced_edges, 3u);
+  EXPECT_FALSE(measureSlice(corners, triangles).bounds());
+}
+
 TEST(SliceMeasures, SlicesOfABoxThatMovesAndGrows) {
   const SpaceTimeMesh mesh = cube(5, 0.75f, 1, 0.5f);
   for (const float t : {0.0f, 0.3f, 1.0f, 2.625f, 4.0f}) {

@@ -76,9 +76,10 @@ CellReport simplifyTo(const std::string& out, const hypermesh::File& file, const
   Options with_order = options;
   with_order.order = run.order;
   hypermesh::Writer writer = writerFor(out, file);
-  const CellReport report =
-      simplifyInCells(file, Metric::kSlice, with_order, {cell_tets, out + ".cells", "test", run.resume}, writer,
-                      executor, memory, run.progress != nullptr ? *run.progress : silent);
+  CellOptions cells;
+  cells.cell_tets = cell_tets, cells.folder = out + ".cells", cells.run_name = "test", cells.resume = run.resume;
+  const CellReport report = simplifyInCells(file, Metric::kSlice, with_order, cells, writer, executor, memory,
+                                            run.progress != nullptr ? *run.progress : silent);
   unwrap(writer.close("{}"));
   EXPECT_FALSE(std::filesystem::exists(out + ".cells"));
   return report;
@@ -267,7 +268,8 @@ TEST(Cells, TheStreamingWriterWritesWhatTheOneInCoreWrites) {
     writeResult(folder.file("r"), mesh, ids, true, {});
     for (const std::size_t buffer : {std::size_t{1} << 12, std::size_t{1} << 26}) {
       hypermesh::Writer again = writerFor(streamed, file);
-      const WrittenMesh written = writeResults({folder.file("r")}, 0.5, again, folder, buffer, progress);
+      const PartResults results{{folder.file("r")}, 0.5};
+      const WrittenMesh written = writeResults({&results, 1}, {}, again, folder, buffer, progress);
       unwrap(again.close("{}"));
       EXPECT_EQ(written.vertices, mesh.live_vertices);
       EXPECT_EQ(written.tets, mesh.live_tets);

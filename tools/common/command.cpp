@@ -86,7 +86,11 @@ Command& Command::common(std::initializer_list<Common> which) {
              kKeepsResult);
         break;
       case kResume:
-        flag("--resume", "go on where an interrupted run stopped", &common_.resume, kKeepsResult);
+        flag("--resume",
+             "go on where an interrupted run with the same input and options stopped: finished cells are not made "
+             "again; "
+             "what is simplified in core, or left nothing, begins anew and says so",
+             &common_.resume, kKeepsResult);
         break;
       case kSeed:
         option("--seed", "N", "seed of every random choice", &common_.seed);

@@ -40,27 +40,17 @@ tet4d::measure::DistanceOptions distanceOptions(const AffineMap& map) {
   return options;
 }
 
-// Bytes that comparing slices holds: those of both, their trees, and the pieces of the search. A slice has a triangle
-// for two of the tetrahedra in the pages it is cut from.
-std::uint64_t measureBytes(const hypermesh::File& mesh, const std::vector<double>& frames) {
-  constexpr std::uint64_t kTriangleBytes = 200, kPieceBytes = 200;
-  std::uint64_t most = 0;
-  for (const double frame : frames) {
-    std::uint64_t tets = 0;
-    for (std::size_t k = 0; k < mesh.geometryPages(); ++k) {
-      const paged::PageEntry& page = mesh.geometryEntry(k);
-      if (page.bounds.min.t <= frame && frame <= page.bounds.max.t) tets += page.counts[2];
-    }
-    most = std::max(most, tets);
-  }
-  return most / 2 * (kTriangleBytes + kPieceBytes) + kMostPieces * kPieceBytes;
+// Bytes that comparing slices holds: those of both, their trees, and the pieces of the search.
+std::uint64_t measureBytes(const hypermesh::File& a, const hypermesh::File& b, const std::vector<double>& frames) {
+  constexpr std::uint64_t kPieceBytes = 200;
+  return sliceBytes(a, frames) + sliceBytes(b, frames) + kMostPieces * kPieceBytes;
 }
 
 void compare(cli::Session& session, const hypermesh::File& reference, std::uint64_t times) {
   const hypermesh::File result = unwrap(hypermesh::File::open(session.options().output));
   const auto frames = tet4d::measure::sampleFrames(reference, times);
-  const auto reserved = session.memory().reserve(
-      std::max(measureBytes(reference, frames), measureBytes(result, frames)), "the slices that are compared");
+  const auto reserved =
+      session.memory().reserve(measureBytes(reference, result, frames), "the slices that are compared");
   const tet4d::measure::DistanceOptions options = distanceOptions(reference.header().index_to_world);
   const tet4d::measure::SliceDistance distance =
       tet4d::measure::compareSlices(result, reference, frames, options, session.executor(), session.progress());
@@ -76,6 +66,20 @@ void compare(cli::Session& session, const hypermesh::File& reference, std::uint6
 }
 
 }  // namespace
+
+std::uint64_t sliceBytes(const hypermesh::File& mesh, const std::vector<double>& frames) {
+  constexpr std::uint64_t kTriangleBytes = 400;
+  std::uint64_t most = 0;
+  for (const double frame : frames) {
+    std::uint64_t tets = 0;
+    for (std::size_t k = 0; k < mesh.geometryPages(); ++k) {
+      const paged::PageEntry& page = mesh.geometryEntry(k);
+      if (page.bounds.min.t <= frame && frame <= page.bounds.max.t) tets += page.counts[2];
+    }
+    most = std::max(most, tets);
+  }
+  return most / 2 * kTriangleBytes;
+}
 
 void measure(cli::Session& session, const hypermesh::File& reference, std::uint64_t times) {
   const auto warn = [&](const std::string& why) {
@@ -154,16 +158,16 @@ void tell(cli::Session& session, const Options& options, const Sum& sum) {
   }
 }
 
-int tellFailure(cli::Session& session, const Options& options, const SimplifiedPart& part) {
-  session.stats().count("tries", part.tries);
+int tellFailure(cli::Session& session, const Options& options, std::uint64_t tries, double measured, double estimate) {
+  session.stats().count("tries", tries);
   session.stats().error("promised_world", *options.max_error);
-  session.stats().error("least_measured_world", part.measured);
-  session.stats().error("estimate_world", part.estimate);
+  session.stats().error("least_measured_world", measured);
+  session.stats().error("estimate_world", estimate);
   char text[200];
   std::snprintf(text, sizeof text,
                 "--max-error: %llu tries did not come to %.3g world units: the least that was measured is %.3g, "
                 "under an estimate of %.3g",
-                static_cast<unsigned long long>(part.tries), *options.max_error, part.measured, part.estimate);
+                static_cast<unsigned long long>(tries), *options.max_error, measured, estimate);
   session.warn(text);
   session.warn("nothing is written; promise more, or give more --tries");
   return cli::kExitFailure;

@@ -54,7 +54,7 @@ Size sizeOf(const exchange::WorldMesh& mesh) {
                       static_cast<float>(p[2] - mesh.points[0][2])});
   }
   const measure::SliceMeasures size = measure::measureSlice(points, mesh.triangles);
-  return {size.area, size.volume, size.closed()};
+  return {size.area, size.volume, size.bounds()};
 }
 
 }  // namespace tet4d::report
