@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libpreprocess/qslim4d/inside.h"
+#include "libpreprocess/qslim4d/placement_pair.h"
 
 namespace tet4d::qslim4d {
 namespace {
@@ -28,6 +29,10 @@ std::uint64_t edgeOf(std::uint32_t a, std::uint32_t b) {
 
 // Whether an angle with this dot product, of vectors whose squared lengths have this product, is at most 75 degrees.
 bool isTurnSmall(double dot, double lengths2) { return dot >= 0 && dot * dot >= kLeastTurn * kLeastTurn * lengths2; }
+
+bool hasVolume(double volume2, double longest2) {
+  return volume2 > kLeastVolume * kLeastVolume * longest2 * longest2 * longest2;
+}
 
 // The 2x2 minors of two edges: the 4D cross product but for its first factor.
 struct Minors {
@@ -91,6 +96,42 @@ bool Collapser::evaluate(std::uint32_t u, std::uint32_t v, Placement& placement)
   return true;
 }
 
+void Collapser::price(std::uint32_t u, std::span<const std::uint32_t> others, std::vector<Priced>& priced) const {
+  const SlimMesh& mesh = *mesh_;
+  const auto alone = [&](std::uint32_t w) {
+    Placement placement;
+    if (evaluate(std::min(u, w), std::max(u, w), placement)) priced.push_back({w, placement.cost, placement.error});
+  };
+  const bool is_usual = mesh.walls[u] == 0 && (mesh.is_boundary[u] & kLocked) == 0 && !mesh.columns.inMetric();
+  std::array<std::uint32_t, 2> pair{};
+  std::size_t waiting = 0;
+  const auto both = [&] {
+    const auto [a, b] = pair;
+    const PairCosts costs =
+        costPair(mesh.quadrics[u], mesh.positions[u], {&mesh.quadrics[a], &mesh.quadrics[b]},
+                 {&mesh.positions[a], &mesh.positions[b]}, rules_.align, rules_.frames, mesh.space, mesh.domain);
+    for (std::size_t i = 0; i < waiting; ++i) {
+      if (costs.is_usual[i])
+        priced.push_back({pair[i], costs.cost[i], costs.error[i]});
+      else
+        alone(pair[i]);
+    }
+    waiting = 0;
+  };
+  for (const std::uint32_t w : others) {
+    if ((mesh.is_boundary[w] & kLocked) != 0) continue;
+    if (!is_usual || mesh.walls[w] != 0) {
+      alone(w);
+      continue;
+    }
+    pair[waiting++] = w;
+    if (waiting == 2) both();
+  }
+  if (waiting == 0) return;
+  pair[1] = pair[0];
+  both();
+}
+
 // The tetrahedra at v, apart from those with `other`.
 void Collapser::gatherApart(std::uint32_t v, std::uint32_t other, std::vector<Corner>& apart) const {
   apart.clear();
@@ -101,11 +142,10 @@ void Collapser::gatherApart(std::uint32_t v, std::uint32_t other, std::vector<Co
   }
 }
 
-void Collapser::gather(std::uint32_t u, std::uint32_t v) {
-  mesh_->prefetchStar(v);
-  gatherApart(u, v, apart_u_);
+// The tetrahedra at v: apart from those with u, and the link of both.
+void Collapser::gatherSecond(std::uint32_t u, std::uint32_t v) {
   apart_v_.clear();
-  link_edges_.clear();
+  link_edges_.clear(), link_tets_.clear();
   for (const std::uint32_t c : mesh_->starOf(v)) {
     const hypermesh::Tet& tet = mesh_->tets[c / 4];
     if (tet[0] == kNone) continue;
@@ -118,6 +158,7 @@ void Collapser::gather(std::uint32_t u, std::uint32_t v) {
     for (const std::uint32_t w : tet)
       if (w != u && w != v) rest[n++] = w;
     link_edges_.push_back(edgeOf(rest[0], rest[1]));
+    link_tets_.push_back(c / 4);
   }
 }
 
@@ -128,7 +169,7 @@ void Collapser::sharedPieces(const std::vector<Corner>& apart, std::vector<Edge>
     Face shared{};
     std::size_t n = 0;
     for (std::uint32_t i = 0; i < 4; ++i)
-      if (i != number % 4 && (marks_[tet[i]] & kOfBoth) != 0) shared[n++] = tet[i];
+      if (i != number % 4 && (marks_.flags(tet[i]) & kOfBoth) != 0) shared[n++] = tet[i];
     if (n < 2) continue;
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = i + 1; j < n; ++j) edges.push_back(edgeOf(shared[i], shared[j]));
@@ -142,14 +183,14 @@ void Collapser::sharedPieces(const std::vector<Corner>& apart, std::vector<Edge>
 // their corners among the few of Lk(uv).
 bool Collapser::linksAllow() {
   if (link_edges_.empty()) return false;
-  marks_.begin(3 * (apart_u_.size() + apart_v_.size()) + 2 * link_edges_.size());
+  marks_.begin(3 * (apart_u_.size() + apart_v_.size()) + 2 * link_edges_.size(), mesh_->positions.size());
   for (const Edge edge : link_edges_)
-    marks_[static_cast<std::uint32_t>(edge >> 32)] = marks_[static_cast<std::uint32_t>(edge)] = kOfBoth;
+    marks_.add(static_cast<std::uint32_t>(edge >> 32), kOfBoth), marks_.add(static_cast<std::uint32_t>(edge), kOfBoth);
   for (const auto& [tet, number] : apart_u_)
-    for (const std::uint32_t w : tet) marks_[w] |= kOfU;
+    for (const std::uint32_t w : tet) marks_.add(w, kOfU);
   for (const auto& [tet, number] : apart_v_) {
     for (std::uint32_t i = 0; i < 4; ++i)
-      if (i != number % 4 && marks_[tet[i]] == kOfU) return false;
+      if (i != number % 4 && marks_.flags(tet[i]) == kOfU) return false;
   }
   sharedPieces(apart_u_, edges_u_, faces_u_);
   sharedPieces(apart_v_, edges_v_, faces_v_);
@@ -211,13 +252,16 @@ Verdict Collapser::judgeStar(const std::vector<Corner>& apart, const Vec4f& from
     const Minors minors(a, b);
     const glm::dvec4 before = minors.cross(difference(from, *p[0])), after = minors.cross(to);
     const glm::dvec4 la = space.toLengths(a), lb = space.toLengths(b), lto = space.toLengths(to);
-    const double longest2 =
-        std::max({glm::dot(la, la), glm::dot(lb, lb), glm::dot(lto, lto), glm::dot(la - lb, la - lb),
-                  glm::dot(la - lto, la - lto), glm::dot(lb - lto, lb - lto)});
+    const double reach2 = std::max({glm::dot(la, la), glm::dot(lb, lb), glm::dot(lto, lto)});
     const glm::dvec3 was = space.spatialNormal(before), is = space.spatialNormal(after);
     const double speed2 = space.speed * space.speed, was2 = glm::dot(was, was), is2 = glm::dot(is, is);
     const double volume2 = speed2 * is2 + after.w * after.w;
-    if (!(volume2 > kLeastVolume * kLeastVolume * longest2 * longest2 * longest2)) return Verdict::kFlip;
+    // No edge is longer than two from the first corner together.
+    if (!hasVolume(volume2, 4 * reach2)) {
+      const double across2 =
+          std::max({glm::dot(la - lb, la - lb), glm::dot(la - lto, la - lto), glm::dot(lb - lto, lb - lto)});
+      if (!hasVolume(volume2, std::max(reach2, across2))) return Verdict::kFlip;
+    }
     // Spatial normals, for they are what a slice shows; where the surface jumps there is none, and the whole normal
     // counts.
     const double dot = glm::dot(was, is);
@@ -232,12 +276,14 @@ Verdict Collapser::judgeStar(const std::vector<Corner>& apart, const Vec4f& from
 
 // The cheap tests first, and those that refuse most.
 Verdict Collapser::judge(std::uint32_t u, std::uint32_t v, const Vec4f& at) {
-  gather(u, v);
+  mesh_->prefetchStar(v);
+  gatherApart(u, v, apart_u_);
+  if (const Verdict verdict = judgeStar(apart_u_, mesh_->positions[u], at); verdict != Verdict::kAllowed)
+    return verdict;
+  gatherSecond(u, v);
   const std::size_t left = apart_u_.size() + apart_v_.size();
   if (left > rules_.most_star) return Verdict::kStar;
   if (left == 0) return Verdict::kLinks;  // nothing would be left of the component
-  if (const Verdict verdict = judgeStar(apart_u_, mesh_->positions[u], at); verdict != Verdict::kAllowed)
-    return verdict;
   if (const Verdict verdict = judgeStar(apart_v_, mesh_->positions[v], at); verdict != Verdict::kAllowed)
     return verdict;
   return linksAllow() && bordersAllow(u, v) ? Verdict::kAllowed : Verdict::kLinks;
@@ -245,26 +291,16 @@ Verdict Collapser::judge(std::uint32_t u, std::uint32_t v, const Vec4f& at) {
 
 std::uint32_t Collapser::collapse(std::uint32_t u, std::uint32_t v, const Vec4f& at) {
   makeRoom(*mesh_, std::uint64_t{mesh_->stars[u].size} + mesh_->stars[v].size);
+  gatherApart(u, v, apart_u_);
+  gatherSecond(u, v);
   return merge(u, v, at);
 }
 
+// Tetrahedra with both ends die, in v's others u takes v's place.
 std::uint32_t Collapser::merge(std::uint32_t u, std::uint32_t v, const Vec4f& at) {
   SlimMesh& mesh = *mesh_;
-  gatherApart(u, v, apart_u_);
-  apart_v_.clear();
-  std::uint32_t removed = 0;
-  // Tetrahedra with both ends die, in v's others u takes v's place.
-  for (const std::uint32_t c : mesh.starOf(v)) {
-    hypermesh::Tet& tet = mesh.tets[c / 4];
-    if (tet[0] == kNone) continue;
-    if (has(tet, u)) {
-      tet[0] = kNone;
-      ++removed;
-      continue;
-    }
-    tet[c % 4] = u;
-    apart_v_.push_back({tet, c});
-  }
+  for (const std::uint32_t tet : link_tets_) mesh.tets[tet][0] = kNone;
+  for (const Corner& corner : apart_v_) mesh.tets[corner.number / 4][corner.number % 4] = u;
   Star star = mesh.stars[u];
   const std::size_t size = apart_u_.size() + apart_v_.size();
   if (size > star.size)
@@ -276,22 +312,28 @@ std::uint32_t Collapser::merge(std::uint32_t u, std::uint32_t v, const Vec4f& at
     for (const Corner& corner : *apart) *to++ = corner.number;
   mesh.stars[u] = star;
   mesh.stars[v] = {};
+  unite(u, v, at);
+  return static_cast<std::uint32_t>(link_tets_.size());
+}
+
+// What is known of two vertices is that of one.
+void Collapser::unite(std::uint32_t u, std::uint32_t v, const Vec4f& at) {
+  SlimMesh& mesh = *mesh_;
   if (!mesh.columns.empty()) mesh.columns.merge(u, v, mesh.positions[u], mesh.positions[v], at, mesh.space);
   mesh.quadrics[u] = mesh.quadrics[u].about(difference(at, mesh.positions[u]));
   mesh.quadrics[u].add(mesh.quadrics[v].about(difference(at, mesh.positions[v])));
   mesh.positions[u] = at;
   mesh.walls[u] |= mesh.walls[v];
   mesh.is_boundary[u] |= mesh.is_boundary[v];
-  return removed;
 }
 
 std::span<const std::uint32_t> Collapser::neighbours(std::uint32_t v) {
   neighbours_.clear();
   mesh_->prefetchStar(v);
-  marks_.begin(3 * std::size_t{mesh_->stars[v].size});
+  marks_.begin(3 * std::size_t{mesh_->stars[v].size}, mesh_->positions.size());
   mesh_->forEachTet(v, [&](std::uint32_t tet, std::uint32_t) {
     for (const std::uint32_t w : mesh_->tets[tet]) {
-      if (w == v || std::exchange(marks_[w], 1) != 0) continue;
+      if (w == v || marks_.add(w, 1) != 0) continue;
       // The caller will look at the edge's quadric.
       const auto* quadric = reinterpret_cast<const char*>(&mesh_->quadrics[w]);
       __builtin_prefetch(quadric), __builtin_prefetch(quadric + 64), __builtin_prefetch(&mesh_->positions[w]);

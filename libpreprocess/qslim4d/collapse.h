@@ -31,6 +31,15 @@ class Collapser {
   // neither's are among the other's. Otherwise `placement` is filled in. Reads the two vertices only.
   bool evaluate(std::uint32_t u, std::uint32_t v, Placement& placement) const;
 
+  // Of evaluate(), to many vertices from one.
+  struct Priced {
+    std::uint32_t other;
+    double cost, error;
+  };
+  // Appends what evaluate() says of the edges from u to `others` where it allows them, two edges at a time. The same
+  // numbers where the other end is larger than u, else but for rounding.
+  void price(std::uint32_t u, std::span<const std::uint32_t> others, std::vector<Priced>& priced) const;
+
   // The whole test at a place that evaluate() gave: link condition of 3-complexes with boundary (Dey et al. 1999, the
   // boundary coned to one more vertex), no spatial normal turned by more than 75 degrees, no new tetrahedron of four
   // equal times or without volume, the star's size. O(stars).
@@ -39,7 +48,8 @@ class Collapser {
   // Collapses u and v into u at `at`. The edge must have been judged kAllowed. O(stars). Returns the number of
   // tetrahedra removed; the mesh's counts are the caller's to update. Not beside other threads: it may make room.
   std::uint32_t collapse(std::uint32_t u, std::uint32_t v, const Vec4f& at);
-  // The same where makeRoom() has been called for the stars of all that collapse meanwhile.
+  // The same right after judge() of this edge, with no other call between them, where makeRoom() has been called before
+  // for the stars of all that collapse meanwhile.
   std::uint32_t merge(std::uint32_t u, std::uint32_t v, const Vec4f& at);
 
   // The vertices that share a tetrahedron with v, each once, in order of first use. Valid until the next call.
@@ -52,7 +62,8 @@ class Collapser {
     hypermesh::Tet tet;
     std::uint32_t number;  // 4 * tetrahedron + the vertex's place in it
   };
-  void gather(std::uint32_t u, std::uint32_t v);
+  void gatherSecond(std::uint32_t u, std::uint32_t v);
+  void unite(std::uint32_t u, std::uint32_t v, const Vec4f& at);
   void gatherApart(std::uint32_t v, std::uint32_t other, std::vector<Corner>& apart) const;
   bool linksAllow();
   void sharedPieces(const std::vector<Corner>& apart, std::vector<Edge>& edges, std::vector<Face>& faces);
@@ -66,6 +77,7 @@ class Collapser {
   // Of the edge that is looked at: tetrahedra at u without v, at v without u, and the edge's link.
   std::vector<Corner> apart_u_, apart_v_;
   std::vector<Edge> link_edges_;
+  std::vector<std::uint32_t> link_tets_;  // those with both ends
   std::vector<Edge> edges_u_, edges_v_, border_u_, border_v_;
   std::vector<Face> faces_u_, faces_v_;
   std::vector<std::uint32_t> neighbours_;

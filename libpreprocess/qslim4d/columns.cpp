@@ -79,6 +79,33 @@ void makeUnit(std::span<float> v, std::span<const float> otherwise) {
 
 }  // namespace
 
+Columns Columns::withoutVertices() const {
+  Columns none;
+  for (const SlimColumn& column : list) {
+    none.list.push_back({column.name, column.components, column.kind, column.weight, column.low, column.high, {}});
+  }
+  none.terms = terms;
+  return none;
+}
+
+void Columns::copyTo(Columns& part, std::span<const std::uint32_t> vertices) const {
+  for (std::size_t i = 0; i < list.size(); ++i) part.list[i].values.resize(vertices.size() * list[i].components);
+  part.squares.resize(inMetric() ? vertices.size() : 0);
+  part.sums.resize(vertices.size() * terms);
+  if (empty()) return;
+  for (std::uint32_t v = 0; v < vertices.size(); ++v) copyVertex(vertices[v], part, v);
+}
+
+void Columns::copyVertex(std::uint32_t from, Columns& whole, std::uint32_t to) const {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::size_t n = list[i].components;
+    std::copy_n(&list[i].values[from * n], n, &whole.list[i].values[to * n]);
+  }
+  if (!inMetric()) return;
+  whole.squares[to] = squares[from];
+  std::copy_n(&sums[from * terms], terms, &whole.sums[to * terms]);
+}
+
 Quadric Columns::quadric(std::uint32_t u, std::uint32_t v, const Vec4f& at_u, const Vec4f& at_v) const {
   std::array<double, kMostTerms> references{};
   forEachTerm(list,

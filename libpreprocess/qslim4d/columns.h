@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,11 @@ struct Columns {
 
   bool empty() const { return list.empty(); }
   bool inMetric() const { return terms > 0; }
+
+  // The same columns of no vertex; those of the vertices given, in their order; and of one vertex, to another's place.
+  Columns withoutVertices() const;
+  void copyTo(Columns& part, std::span<const std::uint32_t> vertices) const;
+  void copyVertex(std::uint32_t from, Columns& whole, std::uint32_t to) const;
 
   // What a place near u costs the columns if u and v become one vertex there with the best values: about u, weight 0.
   Quadric quadric(std::uint32_t u, std::uint32_t v, const Vec4f& at_u, const Vec4f& at_v) const;

@@ -1,3 +1,5 @@
+// Blocks of a large mesh first (block_sweeps.h); then, on what is left, or on a small mesh from the begin:
+//
 // Rounds of cheap edges that do not touch one another. The cheap edges of the mesh are listed with their costs; a cost
 // is worked out anew only when one of the edge's ends has moved. When few are left on the list all edges are looked at
 // again, for a new one: the dear ones, which most edges are, take no memory. A list that led to nothing is followed by
@@ -9,11 +11,13 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "libpreprocess/qslim4d/block_list.h"
+#include "libpreprocess/qslim4d/block_sweeps.h"
+#include "libpreprocess/qslim4d/cost_histogram.h"
+#include "libpreprocess/qslim4d/cost_unit.h"
 #include "libpreprocess/qslim4d/orders.h"
 
 namespace tet4d::qslim4d {
@@ -32,48 +36,6 @@ constexpr double kEdgesPerVertex = 0.25, kEdgesPerCollapse = 4;
 constexpr std::uint64_t kTetsPerCollapse = 5;
 // Of those looked at in a round, more than were asked for: costs that are as good as equal count as one.
 constexpr std::uint64_t kMostEqual = 4;
-
-// Numbers of edges by cost: the upper half of a float, 128 bins an octave.
-class CostHistogram {
- public:
-  void add(float cost) {
-    ++bins_[binOf(cost)];
-    ++total_;
-  }
-  // No cost is negative, but 0 may have a sign.
-  static std::uint32_t binOf(float cost) { return (std::bit_cast<std::uint32_t>(cost) & 0x7FFFFFFFu) >> 16; }
-  std::uint64_t total() const { return total_; }
-  // The cost that `count` of them stay at or below; kNever if there are fewer.
-  float ofRank(std::uint64_t count) const {
-    std::uint64_t below = 0;
-    for (std::uint32_t bin = 0; bin < bins_.size(); ++bin) {
-      below += bins_[bin];
-      if (below >= count) return std::bit_cast<float>(bin << 16 | 0xFFFFu);
-    }
-    return kNever;
-  }
-
- private:
-  std::vector<std::uint64_t> bins_ = std::vector<std::uint64_t>(std::size_t{1} << 15);
-  std::uint64_t total_ = 0;
-};
-
-// A power of two that brings costs near 1: they are kept as float32, and a mesh may be measured in units of 1e-12 or
-// 1e12. No order and no result changes where they would have had room anyway.
-double costUnit(const SlimMesh& mesh) {
-  const std::size_t stride = mesh.tets.size() / 4096 + 1;
-  double weights = 0, lengths2 = 0;
-  std::size_t count = 0;
-  for (std::size_t t = 0; t < mesh.tets.size(); t += stride) {
-    const hypermesh::Tet& tet = mesh.tets[t];
-    if (tet[0] == kNone) continue;
-    const double length = mesh.space.extent(difference(mesh.positions[tet[1]], mesh.positions[tet[0]]));
-    weights += mesh.quadrics[tet[0]].weight, lengths2 += length * length;
-    ++count;
-  }
-  const double typical = count > 0 ? weights / static_cast<double>(count) * (lengths2 / static_cast<double>(count)) : 0;
-  return std::isnormal(typical) ? std::exp2(-std::ilogb(typical)) : 1;
-}
 
 class Passes {
  public:
@@ -347,11 +309,16 @@ std::uint64_t orderBytes(std::uint64_t vertices, std::uint64_t tets) {
   constexpr std::uint64_t kMarks = 6, kEdge = 12, kChosen = 16;
   const auto looked = static_cast<std::uint64_t>(kEdgesPerVertex * (1 + kMostEqual) * static_cast<double>(vertices));
   const std::uint64_t waiting = std::min<std::uint64_t>(kListBatch * kChunk, vertices) * 16 * kEdge;
-  return vertices * (kMarks + kChosen) + (2 * vertices + tets) * kEdge + looked * sizeof(std::uint64_t) + waiting +
-         (std::uint64_t{1} << 20);
+  const std::uint64_t rounds = vertices * (kMarks + kChosen) + (2 * vertices + tets) * kEdge +
+                               looked * sizeof(std::uint64_t) + waiting + (std::uint64_t{1} << 20);
+  // Sweeps give the mesh's corners back while they last.
+  const std::uint64_t sweeps = sweepBytes(vertices, tets, Options().block_vertices),
+                      corners = tets * 4 * sizeof(std::uint32_t);
+  return std::max(rounds, sweeps - std::min(sweeps, corners));
 }
 
 void runPasses(SlimMesh& mesh, const Options& options, outofcore::Executor& executor, Ledger& ledger) {
+  sweepBlocks(mesh, options, executor, ledger);
   Passes(mesh, options, executor, ledger).run();
 }
 

@@ -13,7 +13,8 @@ class Ledger {
     start_ = mesh.live_tets;
   }
   bool isDone() const { return mesh_.live_tets <= options_.target_tets; }
-  bool isAllowed(const Placement& placement) const { return placement.error <= most_error_; }
+  bool isAllowed(const Placement& placement) const { return isAllowed(placement.error); }
+  bool isAllowed(double error) const { return error <= most_error_; }  // mean cells
   void judged(Verdict verdict) { ++stats.verdicts[static_cast<std::size_t>(verdict)]; }
   void collapsed(std::uint32_t removed, const Placement& placement) {
     collapsed(removed, placement.cost, placement.aligned, placement.error);
@@ -25,6 +26,16 @@ class Ledger {
     stats.removed[costBin(cost)] += removed;
     stats.aligned += aligned ? 1 : 0;
     stats.largest_error = std::max(stats.largest_error, error * mesh_.space.cell);
+  }
+  // What has been done in a part of the mesh, which has counted on its own.
+  void add(const Stats& part) {
+    for (const std::uint32_t removed : part.removed) mesh_.live_tets -= removed;
+    mesh_.live_vertices -= part.collapses;
+    stats.collapses += part.collapses;
+    stats.aligned += part.aligned;
+    for (std::size_t i = 0; i < stats.verdicts.size(); ++i) stats.verdicts[i] += part.verdicts[i];
+    for (std::size_t i = 0; i < stats.removed.size(); ++i) stats.removed[i] += part.removed[i];
+    stats.largest_error = std::max(stats.largest_error, part.largest_error);
   }
   void tell() { progress_.step(start_ - mesh_.live_tets); }
 

@@ -7,17 +7,13 @@
 namespace tet4d::qslim4d {
 namespace {
 
-// Share of the quadric's weight that pulls towards the edge's middle. Directions in which the surface is flat are ruled
-// by it (most vertices have a rank of 3 or less); others move by no more than this share.
-constexpr double kPull = 1e-3;
-// Share of the weight that an edge's squared length costs: orders collapses where the quadric says 0.
-constexpr double kTieBreak = 1e-6;
-
 // Everything is relative to u.
 class Place {
  public:
   Place(const Quadric& q, const Vec4f& u, const Vec4f& v, const Fixed& fixed, const Space& space)
-      : q_(q), u_(u), end_(difference(v, u)), fixed_(fixed), space_(space), length_(space.extent(end_)) {
+      : q_(q), u_(u), end_(difference(v, u)), fixed_(fixed), space_(space) {
+    const glm::dvec4 lengths = space.toLengths(end_);
+    length2_ = glm::dot(lengths, lengths);
     const double pull = kPull * q.weight;
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) pull_[i][j] = pull * space.square[i][j];
@@ -29,10 +25,10 @@ class Place {
   // too far off.
   std::optional<glm::dvec4> minimum(unsigned mask, glm::dvec4 at) const;
   double costAt(const glm::dvec4& at) const { return q_.value(at); }
-  double tieBreak() const { return kTieBreak * q_.weight * length_ * length_; }
+  double tieBreak() const { return kTieBreak * q_.weight * length2_; }
   bool isNear(const glm::dvec4& at) const {
     const glm::dvec4 from_middle = space_.toLengths(at - 0.5 * end_);
-    return glm::dot(from_middle, from_middle) <= 2.25 * length_ * length_;
+    return glm::dot(from_middle, from_middle) <= kFarthest2 * length2_;
   }
   // The pull towards the middle: its matrix over space and time.
   double pullAt(int i, int j) const { return pull_[i][j]; }
@@ -60,7 +56,7 @@ class Place {
   glm::dvec4 end_;
   const Fixed& fixed_;
   const Space& space_;
-  double length_;
+  double length2_ = 0;  // of the edge, squared
   double pull_[4][4] = {};
 };
 
@@ -111,13 +107,14 @@ class Track {
     const double xx = quadric.xx + place.pullAt(0, 0), xy = quadric.xy + place.pullAt(0, 1),
                  xz = quadric.xz + place.pullAt(0, 2), yy = quadric.yy + place.pullAt(1, 1),
                  yz = quadric.yz + place.pullAt(1, 2), zz = quadric.zz + place.pullAt(2, 2);
-    const double lyx = xy / xx, lzx = xz / xx, dy = yy - lyx * xy;
-    const double lzy = (yz - lzx * xy) / dy, dz = zz - lzx * xz - lzy * (yz - lzx * xy);
+    const double ix = 1 / xx, lyx = xy * ix, lzx = xz * ix, dy = yy - lyx * xy;
+    const double iy = 1 / dy, rest = yz - lzx * xy, lzy = rest * iy;
+    const double dz = zz - lzx * xz - lzy * rest, iz = 1 / dz;
     ok_ = xx > 0 && dy > 0 && dz > 0;
     const auto solve = [&](const glm::dvec3& right) {
-      const double y = right.y - lyx * right.x, z = (right.z - lzx * right.x - lzy * y) / dz;
-      const double solved_y = y / dy - lzy * z;
-      return glm::dvec3(right.x / xx - lyx * solved_y - lzx * z, solved_y, z);
+      const double y = right.y - lyx * right.x, z = (right.z - lzx * right.x - lzy * y) * iz;
+      const double solved_y = y * iy - lzy * z;
+      return glm::dvec3(right.x * ix - lyx * solved_y - lzx * z, solved_y, z);
     };
     const glm::dvec4 middle = 0.5 * place.end();
     glm::dvec3 right(0);

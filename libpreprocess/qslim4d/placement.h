@@ -12,6 +12,14 @@
 
 namespace tet4d::qslim4d {
 
+// Share of the quadric's weight that pulls towards the edge's middle. Directions in which the surface is flat are ruled
+// by it (most vertices have a rank of 3 or less); others move by no more than this share.
+inline constexpr double kPull = 1e-3;
+// Share of the weight that an edge's squared length costs: orders collapses where the quadric says 0.
+inline constexpr double kTieBreak = 1e-6;
+// A place farther from the edge's middle than so many of its lengths, squared, is dropped.
+inline constexpr double kFarthest2 = 2.25;
+
 // What a vertex must keep: index-space coordinates that are prescribed (x y z t).
 struct Fixed {
   unsigned mask = 0;  // bit c: coordinate c has value[c]

@@ -32,6 +32,7 @@ struct Options {
   std::uint64_t choices = 8;  // of multichoice
   std::uint64_t seed = 0;     // of multichoice
   CollapseRules rules;
+  std::size_t block_vertices = 4096;  // of passes: a mesh of many such blocks is swept block by block first
 };
 
 // Collapses by what they cost: a bin for every half octave.

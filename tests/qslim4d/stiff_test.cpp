@@ -38,11 +38,14 @@ SlimMesh slimOf(const marching::ExtractedMesh& mesh) {
   return makeSlimMesh(mesh.vertices, mesh.tets, mesh.header.domain, mesh.header.index_to_world, Metric::kSlice);
 }
 
-Stats run(SlimMesh& mesh, Order order, std::uint64_t target, double error = INFINITY) {
+// Blocks so small that most of a mesh's vertices are shared by some.
+constexpr std::size_t kSmallBlock = 256;
+
+Stats run(SlimMesh& mesh, Order order, std::uint64_t target, std::size_t block_vertices = Options().block_vertices) {
   Options options;
+  options.block_vertices = block_vertices;
   options.order = order;
   options.target_tets = target;
-  options.most_error = error;
   outofcore::ThreadExecutor executor(2);
   outofcore::Progress progress;
   return simplify(mesh, options, executor, progress);
@@ -152,21 +155,29 @@ double turnedShare(const SlimMesh& slim, const Scene& scene, const Bounds4f& box
   return area > 0 ? turned / area : 0;
 }
 
-class StiffScenes : public ::testing::TestWithParam<std::tuple<Order, std::size_t>> {};
+struct Way {
+  Order order;
+  std::size_t block_vertices;
+};
+constexpr std::array<Way, 4> kWays{{{Order::kPasses, Options().block_vertices},
+                                    {Order::kPasses, kSmallBlock},
+                                    {Order::kMultichoice, Options().block_vertices},
+                                    {Order::kHeap, Options().block_vertices}}};
+
+class StiffScenes : public ::testing::TestWithParam<std::tuple<Way, std::size_t>> {};
 INSTANTIATE_TEST_SUITE_P(All, StiffScenes,
-                         ::testing::Combine(::testing::Values(Order::kPasses, Order::kMultichoice, Order::kHeap),
-                                            ::testing::Range<std::size_t>(0, 8)));
+                         ::testing::Combine(::testing::ValuesIn(kWays), ::testing::Range<std::size_t>(0, 8)));
 
 TEST_P(StiffScenes, StayManifoldsWithClosedSlicesAndExactWalls) {
-  const auto& [order, rank] = GetParam();
+  const auto& [way, rank] = GetParam();
   const Scene& scene = scenes()[rank];
   SCOPED_TRACE(scene.name);
   const marching::ExtractedMesh mesh = extractField(scene.dims, scene.frames, scene.field);
   SlimMesh slim = slimOf(mesh);
   const std::vector<Walls> walls = slim.walls;
-  run(slim, order, mesh.tets.size() / 5);
+  run(slim, way.order, mesh.tets.size() / 5, way.block_vertices);
   const double at_a_fifth = turnedShare(slim, scene, mesh.header.domain, 7);
-  run(slim, order, mesh.tets.size() / 100);
+  run(slim, way.order, mesh.tets.size() / 100, way.block_vertices);
   EXPECT_LE(slim.live_tets, static_cast<std::uint64_t>(scene.ratio * static_cast<double>(mesh.tets.size())));
   const std::vector<Tet> left = testing::liveTets(slim);
   EXPECT_EQ(left.size(), slim.live_tets);
@@ -211,9 +222,9 @@ marching::ExtractedMesh noise(double share) {
 TEST(QslimStiff, SpecksStayAndNothingIsTorn) {
   for (const double share : {0.01, 0.15}) {
     const marching::ExtractedMesh mesh = noise(share);
-    for (const Order order : {Order::kPasses, Order::kMultichoice, Order::kHeap}) {
+    for (const auto& [order, block_vertices] : kWays) {
       SlimMesh slim = slimOf(mesh);
-      const Stats stats = run(slim, order, 1);
+      const Stats stats = run(slim, order, 1, block_vertices);
       EXPECT_TRUE(stats.stalled) << "a speck is left of every speck";
       EXPECT_LT(slim.live_tets, mesh.tets.size());
       EXPECT_TRUE(topology::checkLinks(testing::liveTets(slim), slim.positions.size(), true).ok());
