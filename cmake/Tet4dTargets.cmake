@@ -17,6 +17,9 @@ add_library(tet4d_warnings INTERFACE)
 if(PROJECT_IS_TOP_LEVEL)
   target_compile_options(tet4d_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor
                                                   -Woverloaded-virtual -Wcast-align -Wold-style-cast -Werror)
+  if(TET4D_UNITY)
+    target_compile_options(tet4d_warnings INTERFACE -Wno-shadow)
+  endif()
   # The sanitizers' checks hide from g++ what is initialised; the release build keeps this warning.
   if(TET4D_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(tet4d_warnings INTERFACE -Wno-maybe-uninitialized)

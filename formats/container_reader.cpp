@@ -213,17 +213,28 @@ std::optional<Reader::Identity> Reader::identify(int fd, const char* path) {
 }
 
 Status Reader::ownSections(std::span<const std::uint32_t> kinds) {
+  struct Range {
+    std::uint64_t begin, end;
+  };
   const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-  owns_sections_ = true;
+  std::vector<Range> ranges;
   for (const SectionEntry& s : sections_) {
     const bool is_wanted = std::find(kinds.begin(), kinds.end(), s.kind) != kinds.end();
     if (!is_wanted || (s.flags & kSectionPaged) != 0 || s.bytes == 0) continue;
     // Whole pages of the machine: what they hold beside the section is the file's too, and is copied with it.
-    const std::uint64_t begin = s.offset / page * page, end = (s.offset + s.bytes + page - 1) / page * page;
-    auto* place = const_cast<std::byte*>(data_.get()) + begin;
-    void* owned = mmap(place, end - begin, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0);
+    ranges.push_back({s.offset / page * page, (s.offset + s.bytes + page - 1) / page * page});
+  }
+  std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.begin < b.begin; });
+  owns_sections_ = true;
+  for (auto next = ranges.begin(); next != ranges.end();) {
+    // Small sections share pages: each page is mapped and read once, which is most of what opening a small file takes.
+    Range whole = *next;
+    while (++next != ranges.end() && next->begin <= whole.end) whole.end = std::max(whole.end, next->end);
+    auto* place = const_cast<std::byte*>(data_.get()) + whole.begin;
+    void* owned =
+        mmap(place, whole.end - whole.begin, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0);
     if (owned == MAP_FAILED) return systemFault(path_, "copy a section");
-    if (Status status = readAt(begin, {place, std::min<std::uint64_t>(end, size_) - begin}); !status.ok())
+    if (Status status = readAt(whole.begin, {place, std::min(whole.end, size_) - whole.begin}); !status.ok())
       return status;
   }
   return {};

@@ -1,11 +1,19 @@
 #!/usr/bin/env bash
 # clang-tidy over the sources that changed since the branch left origin/main (or, without that branch, since the commit
-# before this one), or over all of them. A changed header brings the source of the same name.
-# usage: scripts/run_tidy.sh BUILD_DIR [--all]
+# before this one), or over all of them. A changed header brings the source of the same name. --most N: of changed sources
+# only the N with the most changed lines, so that a large merge does not take an hour; it says how many are left.
+# usage: scripts/run_tidy.sh BUILD_DIR [--all | --most N]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-build_dir=${1:?usage: scripts/run_tidy.sh BUILD_DIR [--all]}
+usage="usage: scripts/run_tidy.sh BUILD_DIR [--all | --most N]"
+build_dir=${1:?$usage}
+most=
+case "${2-}" in
+  "" | --all) [ $# -le 2 ] || { echo "$usage" >&2; exit 2; } ;;
+  --most) [[ ${3-} =~ ^[1-9][0-9]*$ && $# = 3 ]] || { echo "$usage" >&2; exit 2; }; most=$3 ;;
+  *) echo "$usage" >&2; exit 2 ;;
+esac
 patterns=('formats/*.cpp' 'libpreprocess/*.cpp' 'player/*.cpp' 'tools/*.cpp' 'tests/*.cpp')
 
 changedSources() {
@@ -17,8 +25,10 @@ changedSources() {
     echo "tidy: no earlier commit to compare with" >&2
     return
   fi
-  git diff --name-only --diff-filter=d "$base" -- "${patterns[@]}" "${patterns[@]/%.cpp/.h}" |
-    sed 's/\.h$/.cpp/' | sort -u | tr '\n' '\0'
+  # Those with the most changed lines first: they take the longest, and are the last to be left out.
+  git diff --numstat --no-renames --diff-filter=d "$base" -- "${patterns[@]}" "${patterns[@]/%.cpp/.h}" |
+    awk -F '\t' '{ sub(/\.h$/, ".cpp", $3); lines[$3] += $1 + $2 } END { for (file in lines) print lines[file] "\t" file }' |
+    sort -k1,1nr -k2 | cut -f 2 | tr '\n' '\0'
 }
 
 if [ "${2-}" = --all ]; then
@@ -38,6 +48,11 @@ if [ ${#compiled[@]} -eq 0 ]; then
   echo "tidy: no changed sources, nothing to check"
   exit 0
 fi
+left=0
+if [ -n "$most" ] && [ ${#compiled[@]} -gt "$most" ]; then
+  left=$((${#compiled[@]} - most))
+  compiled=("${compiled[@]:0:most}")
+fi
 echo "tidy: ${#compiled[@]} sources"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
@@ -50,3 +65,4 @@ if [ $status -ne 0 ]; then
   exit 1
 fi
 echo "tidy: no faults"
+[ $left = 0 ] || echo "tidy: $left changed sources more were not looked at; --all does"

@@ -216,6 +216,14 @@ class Runner:
         return None
 
 
+def share_of(text):
+    """(K, N) of "K/N"."""
+    k, n = (int(part) for part in text.split("/"))
+    if not 1 <= k <= n:
+        raise ValueError(text)
+    return k, n
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", action="append", default=[], metavar="NAME=PATH")
@@ -224,14 +232,16 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, required=True)
     parser.add_argument("--sanitized", action="store_true")
     parser.add_argument("--only", default="", help="cases whose name contains this")
+    parser.add_argument("--share", type=share_of, default=(1, 1), metavar="K/N", help="every Nth case, from the Kth on")
     parser.add_argument("cases", type=pathlib.Path)
     options = parser.parse_args()
 
     programs = dict(one.split("=", 1) for one in options.program)
     runner = Runner(programs, options.files, options.data, options.work.resolve(), options.sanitized)
-    cases = [case for case in load_cases(options.cases) if options.only in case["name"]]
+    first, step = options.share
+    cases = [(number, case) for number, case in enumerate(load_cases(options.cases)) if options.only in case["name"]]
     held = failed = skipped = 0
-    for number, case in enumerate(cases):
+    for number, case in cases[first - 1::step]:
         try:
             fault = runner.run(case, number)
         except Skip as reason:

@@ -11,7 +11,7 @@ import unittest
 RUNNER = pathlib.Path(__file__).with_name("run_cases.py")
 
 # A program with the manners of ours: `tool exit CODE`, `tool json`, `tool leave NAME`, `tool loop`.
-TOOL = """#!/usr/bin/env python3
+TOOL = f"#!{sys.executable}" + """
 import signal, sys, time
 def stop(number, frame):
     print("tool: interrupted", file=sys.stderr)
@@ -92,6 +92,17 @@ class RunnerTest(unittest.TestCase):
 
     def test_a_file_of_skipped_cases_fails(self):
         self.assertFalse(self.holds(run=["tool", "json"], needs=["another-tool"]))
+
+    def test_shares_run_every_case_once(self):
+        cases = self.root / "tool.json"
+        cases.write_text(json.dumps({"cases": [
+            {"name": str(n), "shell": f"test ! -e {self.root}/{n}; touch {self.root}/{n}"} for n in range(7)]}))
+        words = [sys.executable, str(RUNNER), "--program", f"tool={self.tool}", "--work", str(self.root / "work"), str(cases)]
+        for k in range(1, 4):
+            self.assertEqual(subprocess.run([*words, "--share", f"{k}/3"], capture_output=True, check=False).returncode, 0)
+        self.assertTrue(all((self.root / str(n)).exists() for n in range(7)))
+        for wrong in ("0/3", "4/3", "1"):
+            self.assertEqual(subprocess.run([*words, "--share", wrong], capture_output=True, check=False).returncode, 2)
 
     def test_unknown_fields_are_refused(self):
         self.assertFalse(self.holds(run=["tool", "json"], stdouts=["x"]))
