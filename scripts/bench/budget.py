@@ -87,8 +87,8 @@ def main():
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     file, last = make(options)
-    times = [f"{k * options.step:g}f" for k in range(int(last / options.step) + 1)]
-    times = ",".join(times + STILL * times[-1:])
+    end = f"{int(last / options.step) * options.step:g}f"
+    times = ",".join([f"0f:{end}:{options.step:g}f", *STILL * [end]])
     machine = mc.machine()
     lines = ["| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
     loads, restless = [], []

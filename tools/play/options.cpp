@@ -42,11 +42,11 @@ void addOptions(cli::Command& command, Options& o) {
               "pictures from A to B, both included; A >= B with STEP < 0 runs backward; T,A:B:STEP,… jumps; default: "
               "every frame of the file",
               &o.times)
-      .option(
-          "--renderer", "WHICH",
-          "OpenGL; plain C++; tetrahedra of one .t4h, flat, as the paper's baseline; auto: gl in a window, cpu with "
-          "--offscreen, where OpenGL has no GPU and is slower",
-          cli::Choice{&o.renderer, {"auto", "gl", "cpu", "tets"}})
+      .option("--renderer", "WHICH",
+              "gl: OpenGL; cpu: plain C++; auto: gl in a window, cpu with --offscreen, where OpenGL has no GPU and is "
+              "slower; tets: "
+              "the tetrahedra of one .t4h, flat, as the paper's baseline",
+              cli::Choice{&o.renderer, {"auto", "gl", "cpu", "tets"}})
       .option("--samples", "N", "samples a pixel: 1, 4, 9 or 16", &o.samples)
       .flag("--flat", "one normal a triangle instead of smooth ones", &o.flat)
       .flag("--panels", "with the window's panels over the picture", &o.panels)
@@ -57,10 +57,11 @@ void addOptions(cli::Command& command, Options& o) {
       .option("--screenshot", "FILE", "what the window shows at the end", &o.screenshot,
               cli::kNotInHelp | cli::kIsOutput)
       .heading("Colours")
-      .option(
-          "--shading", "WHICH",
-          "normals: summed up in the slice, the file's column \"normal\", or one a triangle; none: colours as they are",
-          cli::Choice{&o.coloring.shading, {"slice", "file", "flat", "none"}})
+      .option("--shading", "WHICH",
+              "slice: by normals summed up in the slice; file: by the file's column \"normal\"; flat: one normal a "
+              "triangle; none: "
+              "colours as they are",
+              cli::Choice{&o.coloring.shading, {"slice", "file", "flat", "none"}})
       .option("--color", "NAME", "colour by a column; NAME:0, NAME:1 … a component, NAME:magnitude its length",
               &o.coloring.color)
       .option("--color-by", "WHAT", "part: each part of a file a colour of its own; auto: as --color says",
