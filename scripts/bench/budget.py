@@ -3,8 +3,8 @@
 
 Plays a film of the demo's water with --arrival draw under several budgets, by each renderer, and tells the times of its pictures, how
 many of 100 stayed within the budget, how finely they were sampled, and their error (RMSE in linear light, 255ths) against the pictures
-of the same film without a budget. The last three pictures of a film stand still: they must be those without a budget, byte by byte, or
-the script ends with 1. The first pictures of a film, of whose pages and kind nothing is known yet, are told apart (--first) and not
+of the same film without a budget. The last three pictures of a film stand still: as far as their pages are there they must be those
+without a budget, byte by byte, or the script ends with 1. The first pictures of a film, of whose pages and kind nothing is known yet, are told apart (--first) and not
 counted; pictures that lack pages are counted, and left out of the error.
 
 usage: scripts/bench/budget.py --bin build/release/tools --work FOLDER [--budgets 10,16,33,66,100] [--renderers cpu,gl] [--table FILE]
@@ -65,7 +65,8 @@ def row(options, renderer, budget, frames, exact, folder):
     within = "—" if budget == "none" else f"{100 * sum(one <= float(budget) for one in ms) / len(ms):.0f} %"
     rms = math.sqrt(statistics.fmean(one * one for one in errors)) if errors else math.nan
     samples = [frame["samples"] for frame in moving]
-    rests = all(name.read_bytes() == (exact / name.name).read_bytes() for name in names[-STILL:])
+    rests = all(name.read_bytes() == (exact / name.name).read_bytes()
+                for name, frame in list(zip(names, frames))[-STILL:] if frame["absent"] == 0)
     return [renderer, budget, len(moving), f"{statistics.median(ms):.1f}", f"{percentile(ms, 0.95):.1f}", f"{max(ms):.0f}", within,
             f"{max(frame['ms'] for frame in frames[:options.first]):.0f}", f"{statistics.median(samples):.2g}", f"{min(samples):.2g}",
             f"{rms:.2f}", f"{max(errors, default=math.nan):.2f}", sum(frame["absent"] for frame in frames)], rests
