@@ -226,7 +226,7 @@ std::string stateOf(const ViewerFile& file, std::size_t column) {
   std::size_t loaded = 0;
   const std::size_t pages = file.file.geometryPages();
   for (std::size_t page = 0; page < pages; ++page) loaded += file.pager->residentColumn(page, column).empty() ? 0 : 1;
-  if (loaded == 0) return "absent";
+  if (loaded == 0) return "not loaded";
   return loaded == pages ? "loaded" : std::to_string(loaded) + " of " + std::to_string(pages) + " pages";
 }
 

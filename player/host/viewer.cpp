@@ -9,30 +9,15 @@
 #include <utility>
 
 #include "player/host/panels.h"
-#include "player/scene/shot_file.h"
 
 namespace tet4d::host {
 namespace {
 
 constexpr std::size_t kHistory = 120;  // pictures whose cost is kept
 constexpr std::size_t kMostMessages = 6;
-constexpr double kWheelSeconds = 0.25;       // after a turn of the wheel another one is likely
-constexpr double kTurnDegreesPerUnit = 0.4;  // of a drag
-constexpr double kZoomPerNotch = 0.88;
+constexpr double kWheelSeconds = 0.25;  // after a turn of the wheel another one is likely
 constexpr double kPageSeconds = 0.005;  // between looks whether pages have come
 constexpr double kScanSeconds = 0.02;   // and whether a column's range is known
-
-ImGuiIO& guiIo() { return ImGui::GetIO(); }
-
-void mapKeys() {
-  ImGuiIO& io = guiIo();
-  const std::pair<ImGuiKey_, Key> pairs[] = {
-      {ImGuiKey_LeftArrow, Key::kLeft},      {ImGuiKey_RightArrow, Key::kRight}, {ImGuiKey_UpArrow, Key::kUp},
-      {ImGuiKey_DownArrow, Key::kDown},      {ImGuiKey_Home, Key::kHome},        {ImGuiKey_End, Key::kEnd},
-      {ImGuiKey_Escape, Key::kEscape},       {ImGuiKey_Tab, Key::kTab},          {ImGuiKey_Enter, Key::kEnter},
-      {ImGuiKey_Backspace, Key::kBackspace}, {ImGuiKey_Delete, Key::kDelete}};
-  for (const auto& [gui, key] : pairs) io.KeyMap[gui] = static_cast<int>(key);
-}
 
 }  // namespace
 
@@ -47,8 +32,8 @@ Viewer::Viewer(const ViewerOptions& options)
   if (options.shot) state_.shot = *options.shot;
   gui_ = ImGui::CreateContext();
   ImGui::SetCurrentContext(gui_);
-  guiIo().IniFilename = nullptr;  // nothing is written but what is asked for
-  guiIo().LogFilename = nullptr;
+  ImGui::GetIO().IniFilename = nullptr;  // nothing is written but what is asked for
+  ImGui::GetIO().LogFilename = nullptr;
   mapKeys();
   stylePanels(state_.scale);
 }
@@ -129,107 +114,10 @@ scene::Frame Viewer::freeFrame() const {
           std::max(1.0, bottom * state_.scale)};
 }
 
-void Viewer::handle(Event event) { events_.push_back(std::move(event)); }
-
-// ---- events
-
-void Viewer::takeEvents() {
-  // The panels see one press or release at a time, or a quick click would be none.
-  while (!events_.empty()) {
-    const Event event = std::move(events_.front());
-    events_.pop_front();
-    takeEvent(event);
-    if (std::holds_alternative<PointerButton>(event)) return;
-  }
-}
-
-void Viewer::takeEvent(const Event& event) {
-  ImGuiIO& io = guiIo();
-  if (const auto* moved = std::get_if<PointerMoved>(&event)) return pointerMoved(*moved);
-  if (const auto* key = std::get_if<KeyChanged>(&event)) return keyChanged(*key);
-  if (const auto* size = std::get_if<Resized>(&event)) return resized(*size);
-  if (const auto* button = std::get_if<PointerButton>(&event)) {
-    if (button->button < 0 || button->button > 2) return;
-    state_.is_new = false;
-    io.MouseDown[button->button] = button->down;
-    button_ = *button;
-    if (!button->down) drag_ = Drag::kNone;
-  } else if (const auto* wheel = std::get_if<Scrolled>(&event)) {
-    wheel_ += wheel->by;
-    state_.is_new = false;
-    io.MouseWheel += static_cast<float>(wheel->by);
-  } else if (const auto* typed = std::get_if<Typed>(&event)) {
-    io.AddInputCharacter(typed->character);
-    if (io.WantTextInput) return;
-    if (const KeyBinding* binding = bindingOf(typed->character)) act(binding->action);
-  } else if (const auto* dropped = std::get_if<Dropped>(&event)) {
-    for (const std::string& path : dropped->paths) {
-      if (Status status = open(path); !status.ok()) report(status.fault());
-    }
-  }
-}
-
-void Viewer::pointerMoved(const PointerMoved& event) {
-  guiIo().MousePos = {static_cast<float>(event.x), static_cast<float>(event.y)};
-  const glm::dvec2 before = pointer_;
-  pointer_ = glm::dvec2(event.x, event.y) * state_.scale;
-  if (drag_ == Drag::kNone || pointer_ == before) return;
-  scene::View& view = state_.shot.view;
-  if (drag_ == Drag::kTurn) {
-    const glm::dvec2 by = (pointer_ - before) / state_.scale * kTurnDegreesPerUnit;
-    view = scene::turn(view, box_.centre, -by.x, by.y);
-  } else {
-    view = scene::pan(view, pictureSize(), box_.centre, before, pointer_);
-  }
-  moved_by_hand_ = scene_changed_ = true;
-}
-
-void Viewer::keyChanged(const KeyChanged& event) {
-  ImGuiIO& io = guiIo();
-  io.KeysDown[static_cast<int>(event.key)] = event.down;
-  io.KeyCtrl = event.control;
-  io.KeyShift = event.shift;
-  if (!event.down || io.WantTextInput) return;
-  if (const KeyBinding* binding = bindingOf(event.key)) act(binding->action);
-}
-
-void Viewer::resized(const Resized& event) {
-  state_.width = event.width;
-  state_.height = event.height;
-  if (event.scale > 0 && !options_.fixed_scale) rescale(event.scale);
-  scene_changed_ = true;
-  if (event.width == 0 || event.height == 0 || moved_by_hand_ || options_.shot || files_.count() == 0) return;
-  state_.shot.view = scene::fit(state_.shot.view, pictureSize(), freeFrame(), box_);
-}
-
-// Letters are drawn at the framebuffer's own resolution: another scale, other letters.
-void Viewer::rescale(double scale) {
-  if (scale == state_.scale) return;
-  state_.scale = scale;
-  stylePanels(scale);
-  if (canvas_ != nullptr) canvas_->uploadFonts();
-}
-
-// What the pointer does in the picture, once the panels have said whether it is theirs.
-void Viewer::pointInPicture() {
-  const bool theirs = guiIo().WantCaptureMouse;
-  if (button_ && button_->down && !theirs) {
-    drag_ = button_->button == 0 && !button_->shift ? Drag::kTurn : Drag::kPan;
-  }
-  button_.reset();
-  if (wheel_ != 0 && !theirs && files_.count() > 0) {
-    state_.shot.view = scene::zoom(state_.shot.view, pictureSize(), box_, box_.centre, pointer_,
-                                   std::pow(kZoomPerNotch, std::clamp(wheel_, -20.0, 20.0)));
-    moved_by_hand_ = scene_changed_ = true;
-    wheeled_s_ = 0;
-  }
-  wheel_ = 0;
-}
-
 // ---- a frame
 
 void Viewer::layOut(double seconds) {
-  ImGuiIO& io = guiIo();
+  ImGuiIO& io = ImGui::GetIO();
   const auto scale = static_cast<float>(state_.scale);
   io.DisplaySize = {static_cast<float>(state_.width) / scale, static_cast<float>(state_.height) / scale};
   io.DisplayFramebufferScale = {scale, scale};
@@ -370,206 +258,6 @@ bool Viewer::drawScene(bool full) {
   state_.budget = budget_.report();
   show(std::move(image).value(), stats);
   return true;
-}
-
-// ---- what is saved
-
-bool Viewer::recordPicture() {
-  state_.timeline.setTime(recorder_->nextTime());
-  SceneStats stats;
-  auto image = draw(recorder_->nextTime(), recorder_->format(), true, stats);
-  Status status = image.ok() ? recorder_->add(image.value()) : Status(image.fault());
-  if (image.ok()) show(std::move(image).value(), stats);
-  if (!status.ok()) {
-    report(status.fault());
-    recorder_.reset();
-  } else if (recorder_->done()) {
-    endFilm();
-  }
-  settling_ = std::max(settling_, 1);
-  picture_is_full_ = false;
-  return true;
-}
-
-void Viewer::toggleFilm() {
-  if (recorder_) {
-    if (Status status = recorder_->finish(); !status.ok()) {
-      report(status.fault());
-      recorder_.reset();
-      return;
-    }
-    return endFilm();
-  }
-  if (files_.count() == 0) return say("there is nothing to film: drop a file on the window");
-  state_.timeline.play(false);
-  auto started = Recorder::start(options_.directory, state_.film_kind, state_.film_fps,
-                                 state_.timeline.filmTimes(static_cast<unsigned>(std::max(0, state_.film_between))),
-                                 {state_.width, state_.height, state_.samples});
-  if (!started.ok()) return report(started.fault());
-  recorder_ = std::move(started).value();
-}
-
-void Viewer::endRecording() {
-  if (recorder_) toggleFilm();
-}
-
-void Viewer::endFilm() {
-  say("wrote " + recorder_->name() + ", " + std::to_string(recorder_->taken()) +
-      (recorder_->taken() == 1 ? " picture" : " pictures"));
-  recorder_.reset();
-  scene_changed_ = true;
-}
-
-void Viewer::savePictureNow() {
-  if (files_.count() == 0) return say("there is nothing to save: drop a file on the window");
-  SceneStats stats;
-  auto image = draw(state_.timeline.time(), {state_.width, state_.height, state_.samples}, true, stats);
-  if (!image.ok()) return report(image.fault());
-  const auto name = savePicture(options_.directory, image.value());
-  if (!name.ok()) return report(name.fault());
-  say("wrote " + name.value());
-}
-
-// ---- actions
-
-void Viewer::actOnTime(Action action) {
-  Timeline& timeline = state_.timeline;
-  if (recorder_) return;  // the film says what time it is
-  scene_changed_ = true;
-  switch (action) {
-    case Action::kPlay:
-      return timeline.play(!timeline.playing());
-    case Action::kStepBack:
-      return timeline.step(-1);
-    case Action::kStepForward:
-      return timeline.step(1);
-    case Action::kFirst:
-      return timeline.toBegin();
-    case Action::kLast:
-      return timeline.toEnd();
-    case Action::kSlower:
-      return timeline.setSpeed(timeline.speed() / 2);
-    case Action::kFaster:
-      return timeline.setSpeed(timeline.speed() * 2);
-    case Action::kReverse:
-      return timeline.setBackward(!timeline.backward());
-    case Action::kLoop:
-      return timeline.setLoop(timeline.loop() == Loop::kLoop       ? Loop::kPingPong
-                              : timeline.loop() == Loop::kPingPong ? Loop::kOnce
-                                                                   : Loop::kLoop);
-    case Action::kRangeBegin:
-      return timeline.setBegin(timeline.time());
-    case Action::kRangeEnd:
-      return timeline.setEnd(timeline.time());
-    default:
-      return timeline.wholeRange();
-  }
-}
-
-void Viewer::look(scene::StandardView side) {
-  state_.shot.view = scene::standardView(side, state_.shot.view, pictureSize(), freeFrame(), box_);
-}
-
-void Viewer::actOnView(Action action) {
-  using scene::StandardView;
-  if (files_.count() == 0 || state_.width == 0) return;
-  scene_changed_ = true;
-  moved_by_hand_ = action != Action::kFit;
-  switch (action) {
-    case Action::kFit:
-      state_.shot.view = scene::fit(state_.shot.view, pictureSize(), freeFrame(), box_);
-      return;
-    case Action::kFront:
-      return look(StandardView::kFront);
-    case Action::kRight:
-      return look(StandardView::kRight);
-    case Action::kTop:
-      return look(StandardView::kTop);
-    case Action::kBack:
-      return look(StandardView::kBack);
-    case Action::kLeft:
-      return look(StandardView::kLeft);
-    case Action::kBottom:
-      return look(StandardView::kBottom);
-    case Action::kProjection:
-      state_.shot.view = scene::toggleProjection(state_.shot.view, box_.centre);
-      return;
-    default:
-      return look(StandardView::kThreeQuarter);
-  }
-}
-
-// From the material by parts, if there are several, and each column to the material again.
-void Viewer::colorByNext() {
-  ViewerFile* file = selected();
-  if (file == nullptr) return say("there is nothing to colour: drop a file on the window");
-  scene::Coloring& coloring = file->coloring;
-  const std::size_t columns = file->file.columns().size();
-  const bool has_parts = file->file.parts().size() > 1;
-  if (columns == 0 && !has_parts) return say(file->path + " has neither columns nor parts to colour by");
-  if (coloring.by == scene::ColorBy::kMaterial && has_parts) {
-    coloring.by = scene::ColorBy::kPart;
-    return;
-  }
-  const std::size_t next = coloring.by == scene::ColorBy::kColumn ? coloring.column + 1 : 0;
-  colorByColumn(*file, next);
-}
-
-void Viewer::actOnLook(Action action) {
-  scene_changed_ = true;
-  switch (action) {
-    case Action::kSmooth:
-      state_.smooth = !state_.smooth;
-      return;
-    case Action::kNextColors:
-      return colorByNext();
-    case Action::kLegend:
-      state_.legend = !state_.legend;
-      if (state_.legend && files_.legends().empty()) say("the legend explains colours by a column or by parts: c");
-      return;
-    case Action::kLit:
-      if (ViewerFile* file = selected()) file->coloring.lit = !file->coloring.lit;
-      return;
-    case Action::kRoom:
-      toggleRoom(state_.shot.background);
-      return;
-    default:
-      toggleDark(state_.shot.background);
-  }
-}
-
-void Viewer::act(Action action) {
-  ImGui::SetCurrentContext(gui_);
-  settling_ = 3;
-  state_.is_new = false;
-  if (action <= Action::kRangeAll) return actOnTime(action);
-  if (action <= Action::kProjection) return actOnView(action);
-  if (action <= Action::kDark) return actOnLook(action);
-  switch (action) {
-    case Action::kSavePicture:
-      return savePictureNow();
-    case Action::kFilm:
-      return toggleFilm();
-    case Action::kWriteCamera: {
-      const auto name = saveText(options_.directory, "camera", ".json", scene::formatShot(shot()));
-      return name.ok() ? say("wrote " + name.value()) : report(name.fault());
-    }
-    case Action::kPanels:
-      state_.panels = !state_.panels;
-      if (!moved_by_hand_ && !options_.shot) actOnView(Action::kFit);
-      return;
-    case Action::kHelp:
-      state_.help = !state_.help;
-      return;
-    case Action::kClose:
-      if (!state_.help && recorder_) toggleFilm();
-      if (!state_.help) state_.messages.clear();
-      state_.help = false;
-      return;
-    default:
-      endRecording();
-      state_.quit = true;
-  }
 }
 
 // ---- messages

@@ -124,29 +124,35 @@ class Viewer {
   ViewerFile* selected();
 
  private:
+  // viewer_input.cpp
+  static void mapKeys();
   void takeEvents();
   void takeEvent(const Event& event);
   void pointerMoved(const PointerMoved& event);
   void keyChanged(const KeyChanged& event);
   void resized(const Resized& event);
-  void layOut(double seconds);
+  void rescale(double scale);
   void pointInPicture();
-  bool isMoving() const;
-  bool drawChanges(double seconds);
-  bool drawScene(bool full);
-  bool recordPicture();
-  Result<render::Image> draw(double time, const scene::Format& format, bool whole, SceneStats& stats);
-  Pace pace() const;
-  void show(render::Image picture, const SceneStats& stats);
-  void filesChanged();
-  void endFilm();
-  void savePictureNow();
+  // viewer_actions.cpp
   void look(scene::StandardView side);
   void actOnTime(Action action);
   void actOnView(Action action);
   void actOnLook(Action action);
   void colorByNext();
-  void rescale(double scale);
+  // viewer_saving.cpp
+  bool recordPicture();
+  void endFilm();
+  void savePictureNow();
+  void writeCamera();
+  // viewer.cpp
+  void filesChanged();
+  void layOut(double seconds);
+  bool isMoving() const;
+  bool drawChanges(double seconds);
+  bool drawScene(bool full);
+  Result<render::Image> draw(double time, const scene::Format& format, bool whole, SceneStats& stats);
+  Pace pace() const;
+  void show(render::Image picture, const SceneStats& stats);
   void drawLegendOn(render::Image& image, bool whole) const;
   double waitSeconds() const;
   bool isMinimised() const { return state_.width == 0 || state_.height == 0; }

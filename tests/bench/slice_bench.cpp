@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "formats/core/tet_slice.h"
@@ -112,7 +113,8 @@ constexpr std::array<std::uint64_t, 3> kCaches{16, 32, 256};
 struct Sums {
   std::array<std::uint64_t, kCaches.size()> misses{};
   std::vector<double> choose_ms, slice_ms, tree_ms;
-  std::uint64_t processed = 0, drawn = 0, triangles = 0, vertices = 0, tree_drawn = 0, tree_bytes = 0, all = 0;
+  std::uint64_t processed = 0, drawn = 0, triangles = 0, vertices = 0, tree_drawn = 0, tree_bytes = 0;
+  std::uint64_t pages = 0, bytes = 0, all = 0;  // alive: pages, what they take in the file, their triangles
 };
 
 // The slices of the pages alive at t, once cold and three times warm; the median counts.
@@ -123,6 +125,8 @@ void sliceAt(const dyntri::File& file, stream::PageSource& source, float t, Sums
     if (entry.counts[2] == 0 || !isAlive(entry.bounds.min.t, entry.bounds.max.t, t, file.header().last_time)) continue;
     if (!source.load(k).ok()) std::exit(1);
     pages.push_back(k);
+    ++sums.pages;
+    sums.bytes += entry.bytes;
     sums.all += entry.counts[2];
   }
   static render::PageSlicer slicer;
@@ -168,6 +172,35 @@ void sliceAt(const dyntri::File& file, stream::PageSource& source, float t, Sums
   sums.drawn += surface.drawn;
 }
 
+// One line of JSON: means over the slices, medians of times.
+void print(const dyntri::File& file, int slices, const Sums& sums) {
+  const auto each = [&](std::uint64_t sum) { return static_cast<double>(sum) / slices; };
+  const std::pair<const char*, double> fields[] = {{"file_triangles", static_cast<double>(file.header().triangles)},
+                                                   {"file_pages", static_cast<double>(file.geometryPages())},
+                                                   {"frames", static_cast<double>(file.times().size())},
+                                                   {"slices", slices},
+                                                   {"pages", each(sums.pages)},
+                                                   {"bytes", each(sums.bytes)},
+                                                   {"all", each(sums.all)},
+                                                   {"processed", each(sums.processed)},
+                                                   {"drawn", each(sums.drawn)},
+                                                   {"triangles", each(sums.triangles)},
+                                                   {"vertices", each(sums.vertices)},
+                                                   {"slice_ms", median(sums.slice_ms)},
+                                                   {"choose_ms", median(sums.choose_ms)},
+                                                   {"acmr_16", each(sums.misses[0]) / each(sums.drawn)},
+                                                   {"acmr_32", each(sums.misses[1]) / each(sums.drawn)},
+                                                   {"acmr_256", each(sums.misses[2]) / each(sums.drawn)},
+                                                   {"processed_per_drawn", each(sums.processed) / each(sums.drawn)},
+                                                   {"active_per_all", each(sums.drawn) / each(sums.all)},
+                                                   {"tree_ms", sums.tree_ms.empty() ? 0 : median(sums.tree_ms)},
+                                                   {"tree_bytes_per_triangle", each(sums.tree_bytes) / each(sums.all)},
+                                                   {"tree_drawn_per_drawn", each(sums.tree_drawn) / each(sums.drawn)}};
+  std::printf("{\"tets\": %llu", static_cast<unsigned long long>(file.header().tets));
+  for (const auto& [name, value] : fields) std::printf(", \"%s\": %.10g", name, value);
+  std::printf("}\n");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -185,18 +218,6 @@ int main(int argc, char** argv) {
     const double part = (i + 0.5) / slices;
     sliceAt(file, source, static_cast<float>(part * double{file.header().last_time}), sums);
   }
-  const auto each = [&](std::uint64_t sum) { return static_cast<double>(sum) / slices; };
-  std::printf(
-      "{\"tets\": %llu, \"slices\": %d, \"slice_ms\": %.3f, \"choose_ms\": %.4f, \"triangles\": %.0f, \"vertices\": "
-      "%.0f, "
-      "\"acmr_16\": %.4f, \"acmr_32\": %.4f, \"acmr_256\": %.4f, "
-      "\"processed_per_drawn\": %.4f, \"active_per_all\": %.4f, \"tree_ms\": %.3f, \"tree_bytes_per_triangle\": %.2f, "
-      "\"tree_drawn_per_drawn\": %.4f}\n",
-      static_cast<unsigned long long>(file.header().tets), slices, median(sums.slice_ms), median(sums.choose_ms),
-      each(sums.triangles), each(sums.vertices), each(sums.misses[0]) / each(sums.drawn),
-      each(sums.misses[1]) / each(sums.drawn), each(sums.misses[2]) / each(sums.drawn),
-      each(sums.processed) / each(sums.drawn), each(sums.drawn) / each(sums.all),
-      sums.tree_ms.empty() ? 0 : median(sums.tree_ms), each(sums.tree_bytes) / each(sums.all),
-      each(sums.tree_drawn) / each(sums.drawn));
+  print(file, slices, sums);
   return 0;
 }

@@ -96,38 +96,6 @@ void unlit(scene::DrawList& list) {
   list.ambient = glm::vec3(1);
 }
 
-TEST(ColorMaps, RunFromEndToEndAndClamp) {
-  ASSERT_EQ(colorMaps().size(), 6u);
-  EXPECT_EQ(findColorMap("no such map"), nullptr);
-  EXPECT_EQ(colorMaps()[0].name, "viridis");
-  const ColorMap& viridis = *findColorMap("viridis");
-  const auto expectColor = [](std::array<float, 3> found, double r, double g, double b) {
-    EXPECT_NEAR(255 * found[0], r, 2);
-    EXPECT_NEAR(255 * found[1], g, 2);
-    EXPECT_NEAR(255 * found[2], b, 2);
-  };
-  expectColor(viridis.at(0), 68, 1, 84);
-  expectColor(viridis.at(0.5f), 33, 145, 140);
-  expectColor(viridis.at(1), 253, 231, 37);
-  expectColor(viridis.at(-3), 68, 1, 84);
-  expectColor(viridis.at(7), 253, 231, 37);
-  expectColor(viridis.at(kNaN), 68, 1, 84);
-  expectColor(findColorMap("cool-warm")->at(0.5f), 221, 221, 221);
-  expectColor(findColorMap("grey")->at(0.25f), 64, 64, 64);
-}
-
-// Luminance of the sequential maps rises all the way: what makes them readable in print.
-TEST(ColorMaps, OfOneDirectionGetLighterAllTheWay) {
-  for (const ColorMap& map : colorMaps()) {
-    if (map.name == "cool-warm") continue;
-    const scene::DrawColumn column = columnOf(0, 1, 0, 0, 1, std::string(map.name).c_str());
-    for (std::size_t i = 1; i < column.table.size(); ++i) {
-      const glm::vec3 weights(0.2126f, 0.7152f, 0.0722f);
-      EXPECT_GE(glm::dot(weights, column.table[i]), glm::dot(weights, column.table[i - 1])) << map.name << ' ' << i;
-    }
-  }
-}
-
 TEST(DrawColumnStiff, RangesAtTheEndsOfFloatUnknownsAndLengths) {
   const float largest = std::numeric_limits<float>::max(), infinite = std::numeric_limits<float>::infinity();
   const scene::DrawColumn widest = columnOf(0, 1, 0, largest, -largest);

@@ -1,10 +1,13 @@
 // The player at its edges: odd files, odd times, odd budgets, displays that change, files that do.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include "player/stream/page_buffer.h"
 #include "tests/player/picture.h"
@@ -28,28 +31,31 @@ std::uint64_t drawnAt(test::ViewerStage& stage, double time) {
   return stage->state().stats.drawn;
 }
 
+// Writes triangles of one page with the lifespans that their edges give; those of empty ones are left out.
+std::string writeTriangles(const std::string& name, test::Page page, const std::vector<double>& times) {
+  std::vector<std::pair<dyntri::Lifespan, dyntri::Triangle>> alive;
+  for (const dyntri::Triangle& triangle : page.triangles) {
+    dyntri::Lifespan life{-1e9f, 1e9f};
+    for (const std::uint32_t edge : triangle) {
+      life.begin = std::max(life.begin, page.vertices[page.edges[edge].a].t);
+      life.end = std::min(life.end, page.vertices[page.edges[edge].b].t);
+    }
+    if (life.begin < life.end) alive.emplace_back(life, triangle);
+  }
+  std::stable_sort(alive.begin(), alive.end(),
+                   [](const auto& a, const auto& b) { return a.first.begin < b.first.begin; });
+  page.triangles.clear();
+  for (const auto& [life, triangle] : alive) page.lifespans.push_back(life), page.triangles.push_back(triangle);
+  return test::writeFile(name, {page}, {{}, times, paged::Codec::kRaw});
+}
+
 // One tetrahedron of space-time, its corners at times 0, 1, 2 and 3: four triangles, each between three of them.
 std::string oneTetrahedron(const std::string& name) {
   test::Page page;
   page.vertices = {{0, 0, 0, 0}, {4, 0, 0, 1}, {0, 4, 0, 2}, {0, 0, 4, 3}};
   page.edges = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
   page.triangles = {{0, 1, 2}, {1, 2, 3}, {2, 3, 4}, {2, 4, 5}};
-  const auto life = [&](const dyntri::Triangle& triangle) {
-    dyntri::Lifespan both{-1e9f, 1e9f};
-    for (const std::uint32_t edge : triangle) {
-      both.begin = std::max(both.begin, page.vertices[page.edges[edge].a].t);
-      both.end = std::min(both.end, page.vertices[page.edges[edge].b].t);
-    }
-    return both;
-  };
-  std::vector<dyntri::Triangle> alive;
-  for (const dyntri::Triangle& triangle : page.triangles) {
-    if (life(triangle).begin >= life(triangle).end) continue;
-    alive.push_back(triangle);
-    page.lifespans.push_back(life(triangle));
-  }
-  page.triangles = alive;
-  return test::writeFile(name, {page}, {{}, {0, 1, 2, 3}, paged::Codec::kRaw});
+  return writeTriangles(name, page, {0, 1, 2, 3});
 }
 
 TEST(ViewerStiff, OneTetrahedronPlays) {
@@ -60,6 +66,40 @@ TEST(ViewerStiff, OneTetrahedronPlays) {
   EXPECT_EQ(drawnAt(stage, 1.5), 2u) << "cut in a quadrilateral";
   EXPECT_EQ(drawnAt(stage, 1), 2u) << "exactly on a frame";
   EXPECT_EQ(drawnAt(stage, 3), 1u) << "at the last moment, which belongs to it";
+  stage.type(U' ');
+  for (int i = 0; i < 40; ++i) stage->frame(0.05);
+  EXPECT_TRUE(stage->state().messages.empty());
+}
+
+// Between two frames every tetrahedron reaches from one to the other.
+TEST(ViewerStiff, AllAliveAtAllTimes) {
+  test::ViewerStage stage(small());
+  const std::string path = test::writeTestSphere("stiff_all.t4d", 2);
+  const std::uint64_t all = dyntri::File::open(path).value().header().triangles;
+  ASSERT_EQ(all, 5120u);
+  stage.open(path);
+  for (const double time : {0.0, 1e-300, 0.5, 1 - 1e-7, 1.0}) {
+    EXPECT_EQ(drawnAt(stage, time), all) << time;
+    EXPECT_EQ(stage->state().stats.processed, all) << time;
+  }
+}
+
+// A tetrahedron that lives all the time, and one that is there from t = 1 to the next float: 1.2e-9 of the whole.
+TEST(ViewerStiff, ALifeOfABillionthOfTheWhole) {
+  const float next = std::nextafter(1.0f, 2.0f);
+  test::Page page;
+  page.vertices = {{0, 0, 0, 0}, {4, 0, 0, 33}, {0, 4, 0, 66},   {0, 0, 4, 100},
+                   {5, 5, 5, 1}, {9, 5, 5, 1},  {5, 9, 5, next}, {5, 5, 9, next}};
+  page.edges = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}, {4, 6}, {4, 7}, {5, 6}, {5, 7}};
+  page.triangles = {{0, 1, 2}, {1, 2, 3}, {2, 3, 4}, {2, 4, 5}, {6, 7, 9}, {6, 9, 8}};
+  std::vector<double> times;
+  for (int k = 0; k <= 100; ++k) times.push_back(k);
+  test::ViewerStage stage(small());
+  stage.open(writeTriangles("stiff_billionth.t4d", page, times));
+  EXPECT_EQ(drawnAt(stage, std::nextafter(1.0f, 0.0f)), 1u) << "the float before";
+  EXPECT_EQ(drawnAt(stage, 1), 3u) << "exactly there";
+  EXPECT_EQ(drawnAt(stage, next), 1u) << "half-open";
+  EXPECT_EQ(drawnAt(stage, 50), 2u);
   stage.type(U' ');
   for (int i = 0; i < 40; ++i) stage->frame(0.05);
   EXPECT_TRUE(stage->state().messages.empty());

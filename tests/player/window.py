@@ -12,6 +12,9 @@ XVFB = "xvfb-run -a -s '-screen 0 1400x900x24' "
 # A display of 192 dots an inch; what follows stands within double quotes.
 DENSE = f"xvfb-run -a -s '-screen 0 1600x1000x24 -noreset' sh -c \"/usr/bin/python3 {HERE}/set_dpi.py 192 && exec "
 
+# A window, and another program's hands on it (hands.py), which close it in the end; the window's exit code counts.
+HANDS = XVFB + f"sh -c \"{PLAY} %s & /usr/bin/python3 {HERE}/hands.py %s || kill \\$!; wait \\$!\"; "
+
 
 def alike(result, one, two, most_rms):
     a, b = pixels(result.directory / one), pixels(result.directory / two)
@@ -46,7 +49,7 @@ CASES = [
      "shell": XVFB + f"{PLAY} {SPHERE} --size 500x300 --renderer cpu --type ' ' --quit-after 8"},
     {"name": "a key quits", "timeout": 240, "shell": XVFB + f"{PLAY} {SPHERE} --size 500x300 --type q"},
     {"name": "the first interrupt closes it", "timeout": 240, "exit": 1, "stderr": ["interrupted"],
-     "shell": XVFB + f"timeout --preserve-status -s TERM 8 {PLAY} {SPHERE} --size 500x300"},
+     "shell": XVFB + f"sh -c \"{PLAY} {SPHERE} --size 500x300 & /usr/bin/python3 {HERE}/hands.py move=5,5; kill \\$!; wait \\$!\""},
     {"name": "what a window does not know is refused", "run": ["tet4d-play", SPHERE, "--orbit", "90"], "exit": 2,
      "stderr": ["--orbit", "--offscreen"]},
     {"name": "a column that is not there is refused before it opens", "run": ["tet4d-play", SPHERE, "--color", "speed"], "exit": 2,
@@ -64,6 +67,15 @@ CASES = [
     {"name": "an empty window says what to do", "timeout": 240,
      "shell": XVFB + f"{PLAY} --size 700x400 --quit-after 5 --screenshot window.png;"
                      " tet4d-play --size 700x400 --offscreen --renderer gl --panels -o offscreen.png", "check": check_window},
+    {"name": "files that another program drops are opened, and its keys obeyed", "timeout": 240,
+     "shell": "cp {files}/parts.t4d 'drei Bälle.t4d'; "
+              + HANDS % ("--size 700x400", "'drop=drei Bälle.t4d|{files}/columns.t4d' key=Right key=Tab key=w key=s key=q")
+              + "tet4d-play 'drei Bälle.t4d' {files}/columns.t4d --size 700x400 --at 1 --offscreen --renderer gl --camera camera-0001.json -o offscreen.png;"
+              " mv picture-0001.png window.png", "check": check_bare},
+    {"name": "with the mouse alone: scrub to the end, colour by the first column, turn, zoom, save", "timeout": 240,
+     "shell": HANDS % (f"{COLUMNS} --size 1000x640", "click=975,540 click=60,305 move=700,150 press=1 move=760,190 release=1 wheel=2 click=60,121 key=w key=q")
+              + f"tet4d-play {COLUMNS} --size 1000x640 --at 3 --color 'speed [m/s]' --legend --offscreen --renderer gl --camera camera-0001.json -o offscreen.png;"
+              " mv picture-0001.png window.png", "check": check_bare},
     {"name": "one pixel", "timeout": 240, "shell": XVFB + f"{PLAY} {SPHERE} --size 1x1 --type ' ' --quit-after 4"},
     {"name": "--panels without --offscreen", "run": ["tet4d-play", SPHERE, "--panels", "-o", "a.png"], "exit": 2,
      "stderr": ["--panels", "--offscreen"], "absent": ["a.png"]},
