@@ -30,8 +30,8 @@ struct VertexBlocks {
 };
 
 // Blocks of about `block_vertices` vertices (64 at least; 256 more at most), by a k-d tree over space and time, time
-// measured by the mesh's speed. Other sweeps cut at other places. Needs no stars but which of them are empty. The same for any number
-// of threads. O(vertices log blocks + tets).
+// measured by the mesh's speed. Other sweeps cut at other places. Needs no stars but which of them are empty. The same
+// for any number of threads. O(vertices log blocks + tets).
 VertexBlocks cutBlocks(const SlimMesh& mesh, std::size_t block_vertices, std::size_t sweep,
                        outofcore::Executor& executor);
 
