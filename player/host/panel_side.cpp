@@ -218,7 +218,7 @@ void savePart(Viewer& viewer) {
     ImGui::EndCombo();
   }
   ImGui::SetNextItemWidth(kNumberWidth);
-  ImGui::SliderInt("between frames", &state.film_between, 0, 9);
+  ImGui::SliderInt("in between", &state.film_between, 0, 9);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("pictures between two frames of the data");
   if (state.film_kind == FilmKind::kY4m) filmRate(viewer);
   ImGui::TreePop();
