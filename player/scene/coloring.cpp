@@ -53,7 +53,7 @@ std::string columnName(const dyntri::File& file, std::size_t column) {
 }
 
 std::string valueName(const dyntri::File& file, std::size_t column, int component) {
-  const std::string name = columnName(file, column);
+  std::string name = columnName(file, column);
   const std::uint32_t components = file.columns()[column].components;
   if (components == 1) return name;
   if (component == kMagnitude) return name + ": length";
