@@ -58,8 +58,11 @@ void ColumnScans::run(const std::stop_token& stop) {
     queue_.pop_back();
     reading_ = true;
     lock.unlock();
-    auto spread = scene::spreadOf(file_, which.first, which.second,
-                                  [&](std::size_t, std::size_t) { return !stop.stop_requested(); });
+    const auto count = [&](std::size_t pages_read, std::size_t) {
+      bytes_read_ += file_.pages().entries()[file_.tablePage(pages_read - 1) + 1 + which.first].bytes;
+      return !stop.stop_requested();
+    };
+    auto spread = scene::spreadOf(file_, which.first, which.second, count);
     lock.lock();
     reading_ = false;
     ++done_;

@@ -1,8 +1,10 @@
 // Where the values of a file's columns lie, found out by a thread behind; asked for from the drawing thread.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -30,7 +32,8 @@ class ColumnScans {
   // The same, waiting for it.
   const scene::ColumnSpread& wait(std::size_t column, int component);
   bool busy() const;
-  std::size_t done() const;  // columns known so far
+  std::size_t done() const;                                // columns known so far
+  std::uint64_t bytesRead() const { return bytes_read_; }  // of the file, as they are stored there
   // Columns that could not be read, each once.
   std::vector<Fault> takeFaults();
 
@@ -47,6 +50,7 @@ class ColumnScans {
   std::vector<Fault> faults_;
   bool reading_ = false;
   std::size_t done_ = 0;
+  std::atomic<std::uint64_t> bytes_read_ = 0;
   std::jthread thread_;  // last: stops before the rest goes
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "player/host/output_file.h"
@@ -67,11 +68,8 @@ Result<WindowPointer> openGlfwWindow(const PlayerRequest& request) {
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   // A window on a dense display is as large to the eye as on another.
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, request.ui_scale ? GLFW_FALSE : GLFW_TRUE);
-  const std::string title =
-      "tet4d" + (request.files.empty() ? std::string() : " - " + request.files.front()) +
-      (request.files.size() > 1 ? " and " + std::to_string(request.files.size() - 1) + " more" : "");
-  WindowPointer window(glfwCreateWindow(static_cast<int>(request.width), static_cast<int>(request.height),
-                                        title.c_str(), nullptr, nullptr));
+  WindowPointer window(
+      glfwCreateWindow(static_cast<int>(request.width), static_cast<int>(request.height), "tet4d", nullptr, nullptr));
   if (window != nullptr) return window;
   const std::string reason = lastGlfwError();
   return Fault{FaultCode::kIo, "", "window",
@@ -186,11 +184,16 @@ Status saveWindow(Viewer& viewer, const std::string& path) {
 Status loop(GLFWwindow* window, Viewer& viewer, const PlayerRequest& request) {
   double last = glfwGetTime();
   std::uint64_t shown = 0;
+  std::string title;
   const auto isStopped = [&] { return request.stop && request.stop(); };
   while (glfwWindowShouldClose(window) == GLFW_FALSE && !viewer.state().quit && !isStopped()) {
     const double now = glfwGetTime();
     const Viewer::Outcome outcome = viewer.frame(now - last);
     last = now;
+    if (std::string wanted = viewer.title(); wanted != title) {
+      title = std::move(wanted);
+      glfwSetWindowTitle(window, title.c_str());
+    }
     if (outcome.changed) {
       if (Status status = viewer.present(0); !status.ok()) return status;
       ++shown;

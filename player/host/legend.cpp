@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 namespace tet4d::host {
 namespace {
@@ -76,7 +77,7 @@ std::vector<Tick> powerTicks(double low, double high, std::size_t most) {
 struct Measure {
   double width = 0, height = 0;
 };
-constexpr double kPadding = 0.7, kBarWidth = 1.1, kBarLines = 10, kSwatch = 1.0, kLineStep = 1.35;
+constexpr double kPadding = 0.7, kBarWidth = 1.1, kBarLines = 10, kSwatch = 1.0, kLineStep = 1.35, kMarginLines = 0.8;
 
 std::string shortened(const std::string& text, double most_lines) {
   std::string cut = text;
@@ -154,6 +155,7 @@ void drawLegend(render::Image& image, const Legend& legend, double left, double 
 
 std::vector<Tick> ticksOf(double low, double high, bool logarithmic, std::size_t most) {
   if (!(high > low) || !std::isfinite(low) || !std::isfinite(high)) {
+    if (low == 0) return {{0.5, "0"}};
     const double scale = std::max(std::abs(low), 1e-30);
     return {{0.5, numberText(low, roundStep(scale * 1e-3))}};
   }
@@ -186,11 +188,17 @@ std::vector<Legend> legendOf(const dyntri::File& file, const scene::Coloring& co
 
 double legendLine(std::uint32_t width, std::uint32_t height) { return std::max(10.0, std::min(width, height) / 36.0); }
 
-void drawLegends(render::Image& image, std::span<const Legend> legends, const scene::Frame& within, double line_px,
-                 bool dark) {
-  const Ink ink =
-      dark ? Ink{{18, 22, 27}, {232, 236, 240}, {140, 150, 160}} : Ink{{255, 255, 255}, {28, 32, 38}, {110, 118, 126}};
-  const double margin = 0.8 * line_px, most_width = within.width / line_px - 1.6;
+namespace {
+
+struct Placed {
+  Legend legend;  // cut to what fits
+  Measure size;
+  double left = 0, top = 0, bar_lines = 0;
+};
+
+std::vector<Placed> place(std::span<const Legend> legends, const scene::Frame& within, double line_px) {
+  std::vector<Placed> placed;
+  const double margin = kMarginLines * line_px, most_width = within.width / line_px - 2 * kMarginLines;
   double right = within.left + within.width - margin;
   for (const Legend& given : legends) {
     Legend legend = given;
@@ -198,7 +206,7 @@ void drawLegends(render::Image& image, std::span<const Legend> legends, const sc
     legend.note = shortened(legend.note, std::max(8.0, textWidth(legend.title, 1)));
     const double free_lines = within.height / line_px - 1.6 - headLines(legend) - 2 * kPadding - 0.4;
     const double bar_lines = std::min(kBarLines, free_lines);
-    if (bar_lines < 3) return;
+    if (bar_lines < 3) return placed;
     while (legend.bar.empty() && legend.entries.size() > 1 &&
            kLineStep * static_cast<double>(legend.entries.size()) > free_lines) {
       legend.entries.pop_back();
@@ -206,11 +214,27 @@ void drawLegends(render::Image& image, std::span<const Legend> legends, const sc
     }
     const Measure size = measure(legend, bar_lines);
     const double left = right - size.width * line_px;
-    if (left < within.left + margin - 1) return;
+    if (left < within.left + margin - 1) return placed;
     const double top = within.top + (within.height - size.height * line_px) / 2;
-    drawLegend(image, legend, std::round(left), std::round(top), size, line_px, bar_lines, ink);
+    placed.push_back({std::move(legend), size, left, top, bar_lines});
     right = left - margin;
   }
+  return placed;
+}
+
+}  // namespace
+
+void drawLegends(render::Image& image, std::span<const Legend> legends, const scene::Frame& within, double line_px,
+                 bool dark) {
+  const Ink ink =
+      dark ? Ink{{18, 22, 27}, {232, 236, 240}, {140, 150, 160}} : Ink{{255, 255, 255}, {28, 32, 38}, {110, 118, 126}};
+  for (const Placed& one : place(legends, within, line_px))
+    drawLegend(image, one.legend, std::round(one.left), std::round(one.top), one.size, line_px, one.bar_lines, ink);
+}
+
+double legendsWidth(std::span<const Legend> legends, const scene::Frame& within, double line_px) {
+  const std::vector<Placed> placed = place(legends, within, line_px);
+  return placed.empty() ? 0 : within.left + within.width - placed.back().left + kMarginLines * line_px;
 }
 
 bool isDark(const scene::Background& background) { return background.top.y + background.bottom.y < 1; }

@@ -49,6 +49,9 @@ double legendLine(std::uint32_t width, std::uint32_t height);
 void drawLegends(render::Image& image, std::span<const Legend> legends, const scene::Frame& within, double line_px,
                  bool dark);
 
+// How much of `within` they take at its right end, pixels, with the margins on either side; 0 for none.
+double legendsWidth(std::span<const Legend> legends, const scene::Frame& within, double line_px);
+
 // Whether letters on this background should be light.
 bool isDark(const scene::Background& background);
 

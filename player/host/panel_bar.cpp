@@ -76,10 +76,20 @@ float placeOf(const Timeline& timeline, double time, const ImVec2& low, const Im
   return low.x + static_cast<float>(part) * (high.x - low.x);
 }
 
-void tell(const Timeline& timeline, double time) {
-  Timeline at = timeline;
+// Above the line, in the middle over `x`: below stands where time is.
+void tell(ViewerState& state, double time, float x, float top) {
+  Timeline at = state.timeline;
   at.setTime(time);
-  ImGui::SetTooltip("frame %.2f, time %.6g", at.frame(), time);
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "frame %.2f, time %.6g", at.frame(), time);
+  const float half = ImGui::CalcTextSize(text.data()).x / 2 + ImGui::GetStyle().WindowPadding.x;
+  const float right = std::max(half, ImGui::GetIO().DisplaySize.x - half);
+  ImGui::SetNextWindowPos({std::clamp(x, half, right), top - 4}, ImGuiCond_Always, {0.5f, 1});
+  ImGui::BeginTooltip();
+  ImGui::TextUnformatted(text.data());
+  const ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  state.places["time told"] = {double{low.x}, double{low.y}, double{size.x}, double{size.y}};
+  ImGui::EndTooltip();
 }
 
 // Scrubbing: while the mouse holds the line, the time is where it points.
@@ -110,7 +120,8 @@ void timeLine(Viewer& viewer, float width) {
   const ImU32 color = held ? IM_COL32(255, 255, 255, 255) : IM_COL32(125, 195, 240, 255);
   draw->AddRectFilled({x - 1.5f, low.y + 1}, {x + 1.5f, high.y - 1}, color);
   draw->AddCircleFilled({x, low.y + 5}, 5, color);
-  if ((hovered || held) && !timeline.table().empty()) tell(timeline, held ? timeline.time() : pointed);
+  if ((hovered || held) && !timeline.table().empty())
+    tell(state, held ? timeline.time() : pointed, ImGui::GetMousePos().x, low.y);
 }
 
 void playButtons(Viewer& viewer) {
@@ -205,6 +216,7 @@ void layOutBar(Viewer& viewer, const PanelLayout& layout) {
   ImGui::SameLine(std::max(180.0f, ImGui::GetWindowContentRegionMax().x - width));
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(where.data());
+  markPlace(viewer.state(), "where");
   if (layout.bar_is_tall) more();
 }
 

@@ -14,12 +14,16 @@ namespace tet4d::host {
 namespace {
 
 constexpr float kFieldWidth = 150, kSecond = 130;
-// Columns up to this size are read for the list without being chosen.
+// Columns up to this size are read for the list without being chosen, once their rows are seen.
 constexpr std::uint64_t kListedBytes = std::uint64_t{64} << 20;
 
 std::string rangeText(const scene::ColumnSpread& spread) {
   if (spread.values == 0) return "no finite value";
   std::array<char, 64> text{};
+  if (spread.isOneValue()) {
+    std::snprintf(text.data(), text.size(), "%.4g", double{spread.middle()});
+    return text.data();
+  }
   std::snprintf(text.data(), text.size(), "%.4g to %.4g", double{spread.least}, double{spread.most});
   return text.data();
 }
@@ -252,7 +256,7 @@ void colorByColumn(ViewerFile& file, std::size_t column) {
   if (coloring.by == scene::ColorBy::kColumn && coloring.column == column) return;
   coloring.by = scene::ColorBy::kColumn;
   coloring.column = column;
-  coloring.component = file.file.columns()[column].components == 1 ? 0 : scene::kMagnitude;
+  coloring.component = scene::firstComponent(file.file, column);
   coloring.range = scene::RangeOf::kMost;
 }
 
@@ -304,16 +308,18 @@ void layOutColumns(Viewer& viewer) {
       viewer.changed();
     }
     markPlace(state, ("column " + std::to_string(c)).c_str());
+    const bool is_seen = ImGui::IsItemVisible();
     tip(is_color ? "click: colours of the material again" : "click: colour the surface by it");
     ImGui::SameLine(166);
     ImGui::TextDisabled("%s", kindOf(columns[c].components).c_str());
-    const int component = columns[c].components == 1 ? 0 : scene::kMagnitude;
-    const scene::ColumnSpread* spread =
-        storedBytes(*file, c) <= kListedBytes ? file->scans->of(c, component) : file->scans->known(c, component);
+    const int component = scene::firstComponent(file->file, c);
+    const bool is_asked = is_seen && storedBytes(*file, c) <= kListedBytes;
+    const scene::ColumnSpread* spread = is_asked ? file->scans->of(c, component) : file->scans->known(c, component);
     const std::string range = spread != nullptr     ? rangeText(*spread)
                               : file->scans->busy() ? "reading ..."
                                                     : "large: read when chosen";
-    ImGui::TextDisabled("  %s%s", component == scene::kMagnitude ? "length " : "", range.c_str());
+    const char* of_it = component == scene::kMagnitude ? "length " : columns[c].components > 1 ? "x " : "";
+    ImGui::TextDisabled("  %s%s", of_it, range.c_str());
     ImGui::SameLine(166);
     ImGui::TextDisabled("%s", stateOf(*file, c).c_str());
     tip("pages of this column in memory; only what is drawn is read");

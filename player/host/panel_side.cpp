@@ -20,9 +20,25 @@ std::string shortName(const std::string& path) {
   return name;
 }
 
+// For those who do not drop files.
+void openByPath(Viewer& viewer) {
+  auto& path = viewer.state().path_to_open;
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 50);
+  bool wanted = ImGui::InputTextWithHint("##path", "path of a film (.t4d)", path.data(), path.size(),
+                                         ImGuiInputTextFlags_EnterReturnsTrue);
+  markPlace(viewer.state(), "path");
+  ImGui::SameLine(0, 6);
+  wanted |= ImGui::Button("open", {ImGui::GetContentRegionAvail().x, 0});
+  markPlace(viewer.state(), "open");
+  if (!wanted || path[0] == '\0') return;
+  if (Status status = viewer.open(path.data()); !status.ok()) return viewer.report(status.fault());
+  path.fill('\0');
+}
+
 void filesPart(Viewer& viewer) {
   ViewerState& state = viewer.state();
-  if (viewer.files().count() == 0) return ImGui::TextDisabled("drop .t4d files on the window");
+  openByPath(viewer);
+  if (viewer.files().count() == 0) return ImGui::TextDisabled("or drop .t4d files on the window");
   std::size_t removed = std::numeric_limits<std::size_t>::max();
   const auto& files = viewer.files().all();
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -38,6 +54,7 @@ void filesPart(Viewer& viewer) {
                        ImGuiColorEditFlags_NoTooltip, {14, 19});
     ImGui::SameLine();
     if (ImGui::Selectable(shortName(files[i]->path).c_str(), state.selected == i, 0, {170, 0})) state.selected = i;
+    markPlace(state, ("name " + std::to_string(i)).c_str());
     if (ImGui::IsItemHovered())
       ImGui::SetTooltip("%s\n%llu triangles", files[i]->path.c_str(),
                         static_cast<unsigned long long>(files[i]->file.header().triangles));
@@ -146,8 +163,28 @@ void statisticsPart(Viewer& viewer) {
   row("pages alive",
       grouped(stats.pages_active) + (stats.pages_waiting > 0 ? ", loading " + grouped(stats.pages_waiting) : ""));
   row("read", bytesText(stats.bytes_touched));
+  if (const std::uint64_t scanned = viewer.files().scannedBytes(); scanned > 0)
+    row("scanned", bytesText(scanned) + " for ranges");
   row("in memory", bytesText(stats.resident_bytes));
   if (stats.pages_damaged > 0) row("damaged", grouped(stats.pages_damaged) + " pages left out");
+}
+
+// A film runs as it was seen, until another rate is asked for.
+void filmRate(Viewer& viewer) {
+  ViewerState& state = viewer.state();
+  auto fps = static_cast<float>(viewer.filmFps());
+  ImGui::SetNextItemWidth(kNumberWidth);
+  if (ImGui::SliderFloat("a second", &fps, static_cast<float>(Viewer::kLeastFps), static_cast<float>(Viewer::kMostFps),
+                         "%.4g", ImGuiSliderFlags_Logarithmic))
+    state.film_fps = double{fps};
+  markPlace(state, "film fps");
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip(state.film_fps ? "pictures a second of the film"
+                                     : "pictures a second of the film: as fast as it is played here");
+  }
+  if (!state.film_fps) return;
+  if (ImGui::SmallButton("as played")) state.film_fps.reset();
+  markPlace(state, "as played");
 }
 
 void savePart(Viewer& viewer) {
@@ -171,7 +208,9 @@ void savePart(Viewer& viewer) {
                        {ImGui::GetContentRegionAvail().x, 0}, text.c_str());
     return;
   }
-  if (!ImGui::TreeNode("film options")) return;
+  const bool has_options = ImGui::TreeNode("film options");
+  markPlace(state, "film options");
+  if (!has_options) return;
   ImGui::SetNextItemWidth(kNumberWidth);
   if (ImGui::BeginCombo("film as", state.film_kind == FilmKind::kPng ? "PNG pictures" : "y4m")) {
     if (ImGui::Selectable("PNG pictures", state.film_kind == FilmKind::kPng)) state.film_kind = FilmKind::kPng;
@@ -179,8 +218,9 @@ void savePart(Viewer& viewer) {
     ImGui::EndCombo();
   }
   ImGui::SetNextItemWidth(kNumberWidth);
-  ImGui::SliderInt("between frames", &state.film_between, 0, 9);
+  ImGui::SliderInt("in between", &state.film_between, 0, 9);
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("pictures between two frames of the data");
+  if (state.film_kind == FilmKind::kY4m) filmRate(viewer);
   ImGui::TreePop();
 }
 

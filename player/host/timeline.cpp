@@ -7,7 +7,7 @@
 namespace tet4d::host {
 namespace {
 
-constexpr double kFramesPerSecond = 12, kLongestLeap = 0.25;
+constexpr double kLongestLeap = 0.25;
 
 }  // namespace
 

@@ -44,7 +44,8 @@ class Timeline {
   void setEnd(double time);
   void wholeRange();
 
-  // World time a second of playing. 1: twelve frames a second on average.
+  static constexpr double kFramesPerSecond = 12;
+  // World time a second of playing. 1: kFramesPerSecond frames a second on average.
   double speed() const { return speed_; }
   void setSpeed(double speed);  // 1/1024 .. 1024
   double unitsPerSecond() const;

@@ -75,6 +75,13 @@ ViewerFile* Viewer::selected() {
   return files[state_.selected].get();
 }
 
+std::string Viewer::title() {
+  const ViewerFile* file = selected();
+  if (file == nullptr) return "tet4d";
+  const std::size_t others = files_.count() - 1;
+  return "tet4d - " + file->path + (others > 0 ? " and " + std::to_string(others) + " more" : "");
+}
+
 void Viewer::removeFile(std::size_t rank) {
   files_.remove(rank);
   filesChanged();
@@ -94,7 +101,7 @@ void Viewer::filesChanged() {
     state_.shot.background = background;
     has_view_ = true;
   }
-  state_.shot.view = scene::fit(state_.shot.view, pictureSize(), freeFrame(), box_);
+  state_.shot.view = scene::fit(state_.shot.view, pictureSize(), fitFrame(), box_);
 }
 
 scene::Shot Viewer::shot() const {
@@ -112,6 +119,27 @@ scene::Frame Viewer::freeFrame() const {
   const double left = layout.side ? layout.side_right : 0, bottom = layout.bar ? layout.bar_top : layout.height;
   return {left * state_.scale, 0, std::max(1.0, (layout.width - left) * state_.scale),
           std::max(1.0, bottom * state_.scale)};
+}
+
+scene::Frame Viewer::fitFrame() const {
+  scene::Frame frame = freeFrame();
+  frame.width -= legendRoom();
+  return frame;
+}
+
+// Also of a legend that is switched off: nothing moves when it comes back. None where it would take half the picture.
+double Viewer::legendRoom() const {
+  if (isMinimised()) return 0;
+  const scene::Frame frame = freeFrame();
+  const double room = legendsWidth(files_.legends(), frame, legendLine(state_.width, state_.height));
+  return room < frame.width / 2 ? room : 0;
+}
+
+// A view that nobody has moved yet gives way to a legend that comes.
+void Viewer::makeRoomForLegends() {
+  const double room = legendRoom();
+  if (std::exchange(legend_room_, room) == room || moved_by_hand_ || options_.shot || files_.count() == 0) return;
+  state_.shot.view = scene::fit(state_.shot.view, pictureSize(), fitFrame(), box_);
 }
 
 // ---- a frame
@@ -182,6 +210,7 @@ bool Viewer::drawChanges(double seconds) {
   const bool full = !isMoving();
   if (!scene_changed_ && (picture_is_full_ || !full)) return false;
   scene_changed_ = false;
+  makeRoomForLegends();
   return drawScene(full);
 }
 

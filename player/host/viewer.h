@@ -5,6 +5,7 @@
 // the caller) in start(), frame(), present() and the destructor.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -60,7 +61,8 @@ struct ViewerState {
   std::size_t selected = 0;  // rank of the file whose colours are shown
   FilmKind film_kind = FilmKind::kPng;
   int film_between = 0;
-  double film_fps = 25;
+  std::array<char, 1024> path_to_open{};  // as it is typed
+  std::optional<double> film_fps;         // of a y4m; without: as fast as it is played
   std::vector<Message> messages;
   SceneStats stats;             // of the picture shown
   std::vector<float> frame_ms;  // of the last pictures, oldest first
@@ -112,14 +114,20 @@ class Viewer {
   const render::Image& picture() const { return picture_; }
   // The camera, lights, background and first file's material as they stand.
   scene::Shot shot() const;
-  // Where the panels leave the picture free, pixels.
+  // Where the panels leave the picture free, pixels; and what data are fitted into: no legend stands there.
   scene::Frame freeFrame() const;
+  scene::Frame fitFrame() const;
 
   // For the panels.
   void removeFile(std::size_t rank);
   void changed() { scene_changed_ = true; }
   void setBudget(double ms, std::uint32_t samples);
   void toggleFilm();
+  // Pictures a second of a film begun now, kLeastFps .. kMostFps.
+  double filmFps() const;
+  static constexpr double kLeastFps = 1, kMostFps = 240;
+  // What the window is called: after the file whose colours are shown.
+  std::string title();
   // The file whose colours are shown, or null.
   ViewerFile* selected();
 
@@ -148,6 +156,8 @@ class Viewer {
   void filesChanged();
   void layOut(double seconds);
   bool isMoving() const;
+  double legendRoom() const;
+  void makeRoomForLegends();
   bool drawChanges(double seconds);
   bool drawScene(bool full);
   Result<render::Image> draw(double time, const scene::Format& format, bool whole, SceneStats& stats);
@@ -181,6 +191,7 @@ class Viewer {
   glm::dvec2 pointer_{-1, -1};  // pixels
   double wheel_ = 0;
   std::size_t scans_seen_ = 0;  // columns whose range the panels show
+  double legend_room_ = 0;      // that the view was fitted beside
   std::optional<PointerButton> button_;
 };
 

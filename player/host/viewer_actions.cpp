@@ -41,7 +41,7 @@ void Viewer::actOnTime(Action action) {
 }
 
 void Viewer::look(scene::StandardView side) {
-  state_.shot.view = scene::standardView(side, state_.shot.view, pictureSize(), freeFrame(), box_);
+  state_.shot.view = scene::standardView(side, state_.shot.view, pictureSize(), fitFrame(), box_);
 }
 
 void Viewer::actOnView(Action action) {
@@ -51,7 +51,7 @@ void Viewer::actOnView(Action action) {
   moved_by_hand_ = action != Action::kFit;
   switch (action) {
     case Action::kFit:
-      state_.shot.view = scene::fit(state_.shot.view, pictureSize(), freeFrame(), box_);
+      state_.shot.view = scene::fit(state_.shot.view, pictureSize(), fitFrame(), box_);
       return;
     case Action::kFront:
       return look(StandardView::kFront);

@@ -176,6 +176,12 @@ std::size_t ViewerFiles::scansDone() const {
   return done;
 }
 
+std::uint64_t ViewerFiles::scannedBytes() const {
+  std::uint64_t bytes = 0;
+  for (const auto& file : files_) bytes += file != nullptr ? file->scans->bytesRead() : 0;
+  return bytes;
+}
+
 std::uint64_t ViewerFiles::rangesWaiting() const {
   return static_cast<std::uint64_t>(std::count_if(files_.begin(), files_.end(), [](const auto& f) {
     return f != nullptr && f->shown && f->coloring.needsSpread() &&

@@ -91,6 +91,8 @@ class ViewerFiles {
   bool isScanning() const;
   std::uint64_t rangesWaiting() const;
   std::size_t scansDone() const;
+  // Read to find out where values lie, of the files open now, drawn or not: no part of a picture's bytes_touched.
+  std::uint64_t scannedBytes() const;
   // Of the files shown, by their present coloring.
   std::vector<Legend> legends() const;
   // What renderers see of the files, by rank.

@@ -95,7 +95,7 @@ void Viewer::resized(const Resized& event) {
   if (event.scale > 0 && !options_.fixed_scale) rescale(event.scale);
   scene_changed_ = true;
   if (event.width == 0 || event.height == 0 || moved_by_hand_ || options_.shot || files_.count() == 0) return;
-  state_.shot.view = scene::fit(state_.shot.view, pictureSize(), freeFrame(), box_);
+  state_.shot.view = scene::fit(state_.shot.view, pictureSize(), fitFrame(), box_);
 }
 
 // Letters are drawn at the framebuffer's own resolution: another scale, other letters.

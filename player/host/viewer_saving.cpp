@@ -37,6 +37,12 @@ bool Viewer::recordPicture() {
   return true;
 }
 
+// What is seen at x 1 are kFramesPerSecond frames a second.
+double Viewer::filmFps() const {
+  const double played = Timeline::kFramesPerSecond * state_.timeline.speed() * (std::max(0, state_.film_between) + 1);
+  return std::clamp(state_.film_fps.value_or(played), kLeastFps, kMostFps);
+}
+
 void Viewer::toggleFilm() {
   if (recorder_) {
     if (Status status = recorder_->finish(); !status.ok()) {
@@ -48,7 +54,7 @@ void Viewer::toggleFilm() {
   }
   if (files_.count() == 0) return say("there is nothing to film: drop a file on the window");
   state_.timeline.play(false);
-  auto started = Recorder::start(options_.directory, state_.film_kind, state_.film_fps,
+  auto started = Recorder::start(options_.directory, state_.film_kind, filmFps(),
                                  state_.timeline.filmTimes(static_cast<unsigned>(std::max(0, state_.film_between))),
                                  {state_.width, state_.height, state_.samples});
   if (!started.ok()) return report(started.fault());

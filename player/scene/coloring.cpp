@@ -26,8 +26,14 @@ std::optional<DrawColumn> drawColumnOf(const Coloring& coloring, const dyntri::F
   if (coloring.by == ColorBy::kPart) return makePartColors();
   if (coloring.column >= file.columns().size() || (coloring.needsSpread() && spread == nullptr)) return std::nullopt;
   const ColorRange range = rangeOf(coloring, spread);
-  return makeDrawColumn(coloring.column, file.columns()[coloring.column].components, coloring.component, range.low,
-                        range.high, *coloring.map, {coloring.reversed, coloring.logarithmic});
+  DrawColumn made = makeDrawColumn(coloring.column, file.columns()[coloring.column].components, coloring.component,
+                                   range.low, range.high, *coloring.map, {coloring.reversed, coloring.logarithmic});
+  if (coloring.range != RangeOf::kGiven && spread->isOneValue()) {
+    made.low = made.high = spread->middle();
+    made.table.fill(colorOf(made, made.low));
+    made.below = made.above = made.table.front();
+  }
+  return made;
 }
 
 void apply(const Coloring& coloring, const ColumnSpread* spread, SceneFile& file) {
@@ -36,13 +42,18 @@ void apply(const Coloring& coloring, const ColumnSpread* spread, SceneFile& file
   file.lit = coloring.lit;
 }
 
+int firstComponent(const dyntri::File& file, std::size_t column) {
+  const std::uint32_t components = file.columns()[column].components;
+  return components == 1 || (components == 3 && columnName(file, column) == "normal") ? 0 : kMagnitude;
+}
+
 std::string columnName(const dyntri::File& file, std::size_t column) {
   const ColumnEntry& entry = file.columns()[column];
   return {entry.name, strnlen(entry.name, sizeof entry.name)};
 }
 
 std::string valueName(const dyntri::File& file, std::size_t column, int component) {
-  const std::string name = columnName(file, column);
+  std::string name = columnName(file, column);
   const std::uint32_t components = file.columns()[column].components;
   if (components == 1) return name;
   if (component == kMagnitude) return name + ": length";

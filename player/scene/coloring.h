@@ -39,11 +39,15 @@ struct ColorRange {
 ColorRange rangeOf(const Coloring& coloring, const ColumnSpread* spread);
 
 // Colours of `file` by column or part; nothing by material, or where the column's spread is needed and not known yet
-// (null). A file without parts is one part.
+// (null). A file without parts is one part. Values that are one value but for rounding are one colour.
 std::optional<DrawColumn> drawColumnOf(const Coloring& coloring, const dyntri::File& file, const ColumnSpread* spread);
 
 // Sets what a SceneFile holds of it.
 void apply(const Coloring& coloring, const ColumnSpread* spread, SceneFile& file);
+
+// What of a column is looked at first: its one number, of a vector the length; of normals, whose length says nothing,
+// the first component.
+int firstComponent(const dyntri::File& file, std::size_t column);
 
 std::string columnName(const dyntri::File& file, std::size_t column);
 // "velocity: length", "velocity: y", "pressure": the name with what is drawn of it.

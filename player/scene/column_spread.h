@@ -1,6 +1,8 @@
 // Where a column's values lie: what a map of colours is stretched over.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -16,6 +18,12 @@ struct ColumnSpread {
   float low = 0, high = 1;                // without a hundredth at either end: a few odd ones must not take all colours
   float least_above_zero = 0;             // 0: none is
   std::uint64_t values = 0, unknown = 0;  // finite ones; NaN and infinities
+  // True if what lies between the ends is rounding: less than 1e-5 of the larger one.
+  bool isOneValue() const {
+    return values > 0 &&
+           double{most} - double{least} <= 1e-5 * std::max(std::abs(double{least}), std::abs(double{most}));
+  }
+  float middle() const { return static_cast<float>(0.5 * (double{least} + double{most})); }
 };
 
 // Of a component, or kMagnitude of a row. Reads all of the column, a page at a time; low and high are of every value in

@@ -4,6 +4,7 @@ usage: hands.py ACTION...    in order:
   drop=FILE|FILE    drops files as a file manager does (XDND 5), and waits until the window says that it has them
   move=X,Y  press=BUTTON  release=BUTTON  click=X,Y  wheel=NOTCHES    window's pixels; buttons 1 (left) to 3; notches up are positive
   key=NAME          by its name in X: Right, w
+  title=TEXT        waits until the window is called so
 Fails if no window takes files within a minute, if it does not want these, or if it does not say that it has them.
 """
 import ctypes
@@ -43,7 +44,7 @@ for name, result, *arguments in [
         ("XOpenDisplay", Pointer, ctypes.c_char_p), ("XDefaultRootWindow", Id, Pointer),
         ("XInternAtom", Id, Pointer, ctypes.c_char_p, Int),
         ("XCreateSimpleWindow", Id, Pointer, Id, Int, Int, ctypes.c_uint, ctypes.c_uint, ctypes.c_uint, Id, Id),
-        ("XQueryTree", Int, Pointer, Id, *3 * [Pointer], Pointer), ("XFree", Int, Pointer),
+        ("XFetchName", Int, Pointer, Id, Pointer), ("XQueryTree", Int, Pointer, Id, *3 * [Pointer], Pointer), ("XFree", Int, Pointer),
         ("XListProperties", Pointer, Pointer, Id, Pointer), ("XSetSelectionOwner", Int, Pointer, Id, Id, Id),
         ("XTranslateCoordinates", Int, Pointer, Id, Id, Int, Int, *3 * [Pointer]),
         ("XSendEvent", Int, Pointer, Id, Int, Long, Pointer), ("XPending", Int, Pointer), ("XNextEvent", Int, Pointer, Pointer),
@@ -151,10 +152,20 @@ class Hands:
         self.at = int(x), int(y)
         self.give(MOTION)
 
+    def wait_for_title(self, text):
+        name = ctypes.c_char_p()
+        while time.monotonic() < self.until:
+            if x11.XFetchName(self.display, self.target, ctypes.byref(name)) and name.value == text.encode():
+                return
+            time.sleep(0.05)
+        raise SystemExit(f"the window is called {name.value}, not {text}")
+
     def act(self, action):
         what, _, how = action.partition("=")
         if what == "drop":
             self.drop(how.split("|"))
+        elif what == "title":
+            self.wait_for_title(how)
         elif what == "key":
             self.key(how)
         elif what == "move":

@@ -5,6 +5,7 @@
 
 #include "formats/hypermesh.h"
 #include "tests/player/swept_mesh.h"
+#include "tests/player/tet_soup.h"
 
 namespace {
 
@@ -68,5 +69,9 @@ int main(int, char** argv) {
   write(directory + "/damaged.t4d", many, {{}, times, paged::Codec::kRaw});
   damage(directory + "/damaged.t4d", 4);
   writeHypermesh(directory + "/mesh.t4h");
+  // The same as tetrahedra and as triangles.
+  const test::Soup soup = test::soup(5, 400, 3);
+  copy(test::writeHypermesh("made.t4h", soup, {0, 1, 2, 3}), directory + "/soup.t4h");
+  write(directory + "/soup.t4d", {test::trianglesOf(soup)}, {{}, {0, 1, 2, 3}, paged::Codec::kRaw});
   return 0;
 }

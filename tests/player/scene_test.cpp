@@ -4,10 +4,12 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
+#include "libpreprocess/dyntri/dynamic_triangles_builder.h"
 #include "player/scene/dyntri_chooser.h"
 #include "player/scene/scene_files.h"
 #include "player/stream/page_source.h"
 #include "tests/player/swept_mesh.h"
+#include "tests/player/tet_soup.h"
 
 namespace tet4d::scene {
 namespace {
@@ -147,6 +149,40 @@ TEST(Chooser, CountsAreExactAndNothingAliveIsLeftOut) {
     EXPECT_EQ(surface.processed, surface.items[0].count);
     EXPECT_LT(surface.processed, page.triangles.size()) << "the other frames' triangles are not handed over";
   }
+}
+
+// A page as dyntri-build writes it: a run of each band. Counted against the tetrahedra, not against the page.
+TEST(Chooser, RunsOfBandsHoldEveryLivingTriangleOnce) {
+  const test::Soup made = test::soup(3, 600, 3);
+  const dyntri::BuiltPage page = dyntri::buildPage(made.tets, made.vertices, 6);
+  const dyntri::PageView views[] = {page.view()};
+  const dyntri::File file =
+      openFile(test::writeViews("chooser_bands.t4d", views, {{}, {0, 1, 2, 3}, paged::Codec::kRaw}));
+  stream::PageSource source(file, 1u << 30);
+  ASSERT_TRUE(source.load(0).ok());
+  ASSERT_GT(source.resident(0)->bands.size(), 2u);
+  const std::size_t pages[] = {0};
+  std::uint64_t processed = 0, drawn = 0;
+  for (const float t : {0.0f, 0.25f, 0.5f, 1.0f, 1.7f, 2.0f, 2.5f, 2.999f, 3.0f}) {
+    DrawList list = cameraFor(file);
+    DrawSurface& surface = list.surfaces[0];
+    chooseTriangles(source, pages, t, 3, surface);
+    EXPECT_EQ(surface.drawn, test::trianglesAlive(made, t, 3)) << t;
+    std::vector<int> times_drawn(page.triangles.size(), 0);
+    for (const DrawItem& item : surface.items) {
+      for (std::uint64_t i = item.first; i < item.first + item.count; ++i) ++times_drawn.at(i);
+    }
+    for (std::size_t i = 0; i < page.lifespans.size(); ++i) {
+      const auto [begin, end] = page.lifespans[i];
+      const bool alive = (begin <= t && t < end) || (t == 3 && end == 3);
+      EXPECT_LE(times_drawn[i], 1) << t;
+      EXPECT_GE(times_drawn[i], alive ? 1 : 0) << "triangle " << i << " at " << t;
+    }
+    processed += surface.processed;
+    drawn += surface.drawn;
+  }
+  EXPECT_LT(processed, 2 * drawn) << "few dead ones are handed over";
+  EXPECT_LT(drawn, processed);
 }
 
 TEST(Chooser, AbsentPagesAreCountedAndNotDrawn) {

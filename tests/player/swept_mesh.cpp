@@ -175,6 +175,12 @@ const std::string& temporaryDirectory() {
 }
 
 std::string writeFile(const std::string& name, const std::vector<Page>& pages, const FileSpec& spec) {
+  std::vector<dyntri::PageView> views;
+  for (const Page& page : pages) views.push_back(page.view());
+  return writeViews(name, views, spec);
+}
+
+std::string writeViews(const std::string& name, std::span<const dyntri::PageView> pages, const FileSpec& spec) {
   const std::string path = temporaryDirectory() + "/" + name;
   dyntri::Header header{};
   header.index_to_world = spec.map;
@@ -184,7 +190,7 @@ std::string writeFile(const std::string& name, const std::vector<Page>& pages, c
   auto writer = dyntri::Writer::create(path, header, spec.times, spec.codec, true, columns, spec.part_isovalues);
   if (!writer.ok()) throw std::runtime_error(writer.fault().what);
   for (std::size_t k = 0; k < pages.size(); ++k) {
-    dyntri::PageView view = pages[k].view();
+    dyntri::PageView view = pages[k];
     if (k < spec.part_of_page.size()) view.part = spec.part_of_page[k];
     std::vector<std::vector<float>> rows(spec.columns.size());
     for (std::size_t c = 0; c < rows.size(); ++c) {

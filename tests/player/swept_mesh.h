@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,7 @@ const std::string& temporaryDirectory();
 
 // Writes the pages and returns the path, in temporaryDirectory().
 std::string writeFile(const std::string& name, const std::vector<Page>& pages, const FileSpec& spec);
+std::string writeViews(const std::string& name, std::span<const dyntri::PageView> pages, const FileSpec& spec);
 
 // A sphere of radius 4 -> 6 cells that moves from (8, 8, 8) by (1, 0.5, 0) a frame over `frames` frames; one page
 // between two frames; 642 vertices a frame.

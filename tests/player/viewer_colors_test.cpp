@@ -67,6 +67,98 @@ TEST(ViewerColors, TheListOfColumnsShowsAndChooses) {
   EXPECT_EQ(coloringOf(stage).by, scene::ColorBy::kMaterial) << "again: the material";
 }
 
+// The length of normals is 1 but for rounding: c comes to a component, and what is one value is one colour.
+TEST(ViewerColors, NormalsAreColouredByAComponentAndOneValueByOneColour) {
+  test::ViewerStage stage(large());
+  stage.open(test::writeColumnSphere("colors_c.t4d", 3));
+  for (int i = 0; i < 3; ++i) stage.type(U'c');
+  ASSERT_EQ(coloringOf(stage).column, 2u);
+  EXPECT_EQ(coloringOf(stage).component, 0);
+  ASSERT_EQ(stage->files().legends().size(), 1u);
+  EXPECT_EQ(stage->files().legends()[0].title, "normal: x");
+  EXPECT_GT(stage->files().legends()[0].high - stage->files().legends()[0].low, 1.5);
+  coloringOf(stage).component = scene::kMagnitude;
+  stage->changed();
+  stage.rest();
+  const auto* spread = stage->files().all()[0]->scans->known(2, scene::kMagnitude);
+  ASSERT_NE(spread, nullptr);
+  ASSERT_LT(spread->least, spread->most) << "rounding, for this test to be one";
+  ASSERT_EQ(stage->files().legends().size(), 1u);
+  const Legend legend = stage->files().legends()[0];
+  EXPECT_EQ(legend.low, legend.high);
+  EXPECT_TRUE(std::all_of(legend.bar.begin(), legend.bar.end(), [&](const Rgb& c) { return c == legend.bar[0]; }));
+  const auto ticks = ticksOf(legend.low, legend.high, false, 8);
+  ASSERT_EQ(ticks.size(), 1u);
+  EXPECT_EQ(ticks[0].label, "1.000");
+  const auto drawn = *stage->files().all()[0]->drawn();
+  EXPECT_EQ(scene::colorOf(drawn, spread->least), scene::colorOf(drawn, spread->most));
+  coloringOf(stage).range = scene::RangeOf::kGiven;
+  coloringOf(stage).low = 0, coloringOf(stage).high = 2;
+  EXPECT_EQ(stage->files().all()[0]->drawn()->high, 2) << "what is asked for by hand stays";
+}
+
+// A view that nobody has moved leaves room for the legend, and comes back without it.
+TEST(ViewerColors, TheLegendStandsBesideTheData) {
+  test::ViewerStage stage(large());
+  stage.open(test::writeColumnSphere("colors_room.t4d", 3));
+  const scene::View plain = stage->state().shot.view;
+  const double left = stage->freeFrame().left, free = stage->freeFrame().width;
+  stage.click("column 1");
+  const double room = stage->fitFrame().width;
+  EXPECT_LT(room, free - 60);
+  for (const glm::dvec3& corner : stage->files().box().corners) {
+    const glm::dvec2 at =
+        scene::project(stage->state().shot.view, {1280, 1000}, stage->files().box().centre + corner).pixel;
+    EXPECT_LE(at.x, left + room);
+  }
+  // What differs without the legend differs right of there.
+  const render::Image with = stage->picture();
+  stage.type(U'k');
+  const render::Image without = stage->picture();
+  double first = 1280;
+  for (std::uint32_t y = 0; y < with.height; ++y) {
+    for (std::uint32_t x = 0; x < with.width; ++x) {
+      if (with.row(y)[4 * x] != without.row(y)[4 * x]) first = std::min(first, double{1} * x);
+    }
+  }
+  EXPECT_LT(first, 1280);
+  EXPECT_GE(first, left + room);
+  stage.click("column 1");
+  EXPECT_NEAR(stage->state().shot.view.eye.x, plain.eye.x, 1e-9);
+  // A view of one's own stays.
+  stage.drag(700, 300, 720, 310);
+  const scene::View own = stage->state().shot.view;
+  stage.click("column 1");
+  EXPECT_EQ(stage->state().shot.view.eye, own.eye);
+}
+
+// Only columns whose rows are seen are read for the list, and what that cost is told apart from what is drawn.
+TEST(ViewerColors, RangesAreReadOfColumnsSeenAndCounted) {
+  test::FileSpec spec{{}, {0, 1}, paged::Codec::kRaw};
+  for (int c = 0; c < 40; ++c)
+    spec.columns.push_back(
+        {{"column " + std::to_string(c), 1}, [c](const Vec4f& v) { return std::vector{v.x + float(c)}; }});
+  const test::Page page = test::sweep(test::icosphere(2), test::kTestSphere.motion(), 0, 1);
+  test::ViewerStage stage(large());
+  stage.open(test::writeFile("colors_many.t4d", {page}, spec));
+  stage.rest();
+  const ViewerFile& file = *stage->files().all()[0];
+  std::uint64_t known = 0;
+  for (std::size_t c = 0; c < 40; ++c) known += file.scans->known(c, 0) != nullptr ? 1 : 0;
+  EXPECT_GT(known, 2u);
+  EXPECT_LT(known, 30u);
+  EXPECT_NE(file.scans->known(0, 0), nullptr);
+  EXPECT_EQ(file.scans->known(39, 0), nullptr);
+  EXPECT_EQ(stage->files().scannedBytes(), known * file.file.pages().entries()[file.file.tablePage(0) + 1].bytes);
+  EXPECT_TRUE(file.pager->residentColumn(0, 0).empty()) << "none is kept";
+  // Closed, the list reads nothing.
+  ViewerOptions low = large();
+  low.height = 600;
+  test::ViewerStage closed(low);
+  closed.open(test::temporaryDirectory() + "/colors_many.t4d");
+  EXPECT_EQ(closed->files().scannedBytes(), 0u);
+}
+
 TEST(ViewerColors, MapsAreSwatchesToClick) {
   test::ViewerStage stage(large());
   stage.open(test::writeColumnSphere("colors_maps.t4d", 4));

@@ -266,6 +266,82 @@ TEST(Viewer, AFilmIsTakenOnePictureAFrame) {
   EXPECT_GE(film.size(), taken * 900 * 560 * 3 / 2);
 }
 
+// A film runs as fast as it was seen to, within what players of films take, unless its rate is set.
+TEST(Viewer, FilmsRunAsFastAsTheyAreSeen) {
+  test::ViewerStage stage(small());
+  stage.open(sphere("viewer_rate.t4d"));
+  ViewerState& state = stage->state();
+  EXPECT_EQ(stage->filmFps(), 12);
+  state.timeline.setSpeed(0.5);
+  state.film_between = 3;
+  EXPECT_EQ(stage->filmFps(), 24);
+  state.film_kind = FilmKind::kY4m;
+  stage.type(U'v');
+  stage.rest(40);
+  EXPECT_NE(textOf(stage.directory + "/film-0001.y4m").substr(0, 40).find(" F24:1 "), std::string::npos);
+  state.timeline.setSpeed(1.0 / 64);
+  state.film_between = 0;
+  EXPECT_EQ(stage->filmFps(), Viewer::kLeastFps);
+  state.timeline.setSpeed(64);
+  EXPECT_EQ(stage->filmFps(), Viewer::kMostFps);
+  stage.click("film options");
+  const scene::Frame rate = state.places.at("film fps");
+  stage.drag(rate.left + 140, rate.centre().y, rate.left + 60, rate.centre().y);
+  ASSERT_TRUE(state.film_fps);
+  EXPECT_LT(*state.film_fps, 100);
+  EXPECT_EQ(stage->filmFps(), *state.film_fps);
+  stage.click("as played");
+  EXPECT_FALSE(state.film_fps);
+}
+
+// Without dropping: a path that is typed. Letters are the field's as long as it has them.
+TEST(Viewer, AFileIsOpenedByItsPathAndTheTitleFollows) {
+  test::ViewerStage stage(small());
+  stage.rest();
+  EXPECT_EQ(stage->title(), "tet4d");
+  const auto enter = [&](const std::string& path) {
+    stage.click("path");
+    for (const char c : path) stage->handle(Typed{static_cast<char32_t>(static_cast<unsigned char>(c))});
+    stage.rest();
+    stage.key(Key::kEnter);
+  };
+  const std::string one = sphere("viewer_typed.t4d"), two = sphere("viewer_typed_2.t4d");
+  enter(one);
+  ASSERT_EQ(stage->files().count(), 1u);
+  EXPECT_EQ(stage->files().all()[0]->path, one);
+  EXPECT_FALSE(stage->state().quit) << "no letter was a key";
+  EXPECT_EQ(stage->title(), "tet4d - " + one);
+  enter(test::temporaryDirectory() + "/nowhere.t4d");
+  EXPECT_EQ(stage->files().count(), 1u);
+  ASSERT_FALSE(stage->state().messages.empty());
+  EXPECT_TRUE(stage->state().messages.back().is_error);
+  EXPECT_NE(stage->state().messages.back().text.find("nowhere.t4d"), std::string::npos);
+  EXPECT_NE(std::string(stage->state().path_to_open.data()).find("nowhere.t4d"), std::string::npos) << "to be mended";
+  stage->state().path_to_open.fill('\0');
+  enter(two);
+  ASSERT_EQ(stage->files().count(), 2u);
+  EXPECT_EQ(stage->title(), "tet4d - " + two + " and 1 more");
+  stage.click("name 0");
+  EXPECT_EQ(stage->title(), "tet4d - " + one + " and 1 more");
+}
+
+// Pointing at the time line tells what is there, and hides nothing of what the bar says.
+TEST(Viewer, TheTimeToldStandsAboveTheTimeLine) {
+  test::ViewerStage stage(small());
+  stage.open(sphere("viewer_told.t4d"));
+  const scene::Frame line = stage->state().places.at("time line");
+  for (const double part : {0.01, 0.5, 0.99}) {
+    stage.moveTo(line.left + part * line.width, line.centre().y);
+    for (int i = 0; i < 4; ++i) stage->frame(0.02);
+    ASSERT_TRUE(stage->state().places.contains("time told"));
+    const scene::Frame told = stage->state().places.at("time told"), where = stage->state().places.at("where");
+    EXPECT_LE(told.top + told.height, line.top) << part;
+    EXPECT_LE(told.top + told.height, where.top) << part;
+    EXPECT_GE(told.left, 0) << part;
+    EXPECT_LE(told.left + told.width, 900) << part;
+  }
+}
+
 TEST(Viewer, ABrokenFileIsAMessage) {
   test::ViewerStage stage(small());
   const std::string good = sphere("viewer_good.t4d"), bad = test::temporaryDirectory() + "/viewer_bad.t4d";

@@ -69,11 +69,11 @@ CASES = [
                      " tet4d-play --size 700x400 --offscreen --renderer gl --panels -o offscreen.png", "check": check_window},
     {"name": "files that another program drops are opened, and its keys obeyed", "timeout": 240,
      "shell": "cp {files}/parts.t4d 'drei Bälle.t4d'; "
-              + HANDS % ("--size 700x400", "'drop=drei Bälle.t4d|{files}/columns.t4d' key=Right key=Tab key=w key=s key=q")
+              + HANDS % ("--size 700x400", "'drop=drei Bälle.t4d|{files}/columns.t4d' 'title=tet4d - {files}/columns.t4d and 1 more' key=Right key=Tab key=w key=s key=q")
               + "tet4d-play 'drei Bälle.t4d' {files}/columns.t4d --size 700x400 --at 1 --offscreen --renderer gl --camera camera-0001.json -o offscreen.png;"
               " mv picture-0001.png window.png", "check": check_bare},
     {"name": "with the mouse alone: scrub to the end, colour by the first column, turn, zoom, save", "timeout": 240,
-     "shell": HANDS % (f"{COLUMNS} --size 1000x640", "click=975,540 click=60,305 move=700,150 press=1 move=760,190 release=1 wheel=2 click=60,121 key=w key=q")
+     "shell": HANDS % (f"{COLUMNS} --size 1000x640", "click=975,540 click=60,329 move=700,150 press=1 move=760,190 release=1 wheel=2 click=60,145 key=w key=q")
               + f"tet4d-play {COLUMNS} --size 1000x640 --at 3 --color 'speed [m/s]' --legend --offscreen --renderer gl --camera camera-0001.json -o offscreen.png;"
               " mv picture-0001.png window.png", "check": check_bare},
     {"name": "one pixel", "timeout": 240, "shell": XVFB + f"{PLAY} {SPHERE} --size 1x1 --type ' ' --quit-after 4"},
