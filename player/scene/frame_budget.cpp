@@ -66,7 +66,7 @@ void FrameBudget::add(const FrameWork& work, double ms) {
   if (!std::all_of(frame.terms.begin(), frame.terms.end(), [](double term) { return std::isfinite(term); })) return;
   frames_.push_back(frame);
   ++count_;
-  if (frames_.size() > kWindow) frames_.pop_front();
+  if (frames_.size() > kWindow) forgetOne();
   constexpr std::size_t kRun = 4;
   if (hasChanged()) {
     frames_.erase(frames_.begin(), frames_.end() - kRun);
@@ -78,6 +78,14 @@ void FrameBudget::add(const FrameWork& work, double ms) {
   });
   tells_samples_apart_ = tells_samples_apart_ || most->terms[kSamples] > kApart * least->terms[kSamples];
   fit();
+}
+
+// The oldest frame that another with as many samples is there for: the last of its kind is all that tells what its
+// samples cost.
+void FrameBudget::forgetOne() {
+  const auto has_like = [&](const Frame& one) { return seen({0, 0, one.terms[kSamples]}) > 1; };
+  const auto oldest = std::find_if(frames_.begin(), frames_.end(), has_like);
+  frames_.erase(oldest == frames_.end() ? frames_.begin() : oldest);
 }
 
 // The last four frames all far from what was predicted, on the same side.

@@ -32,7 +32,8 @@ class FrameBudget {
   explicit FrameBudget(double target_ms) : target_ms_(target_ms) {}
   double targetMs() const { return target_ms_; }
 
-  // A frame has been drawn. A time that is not a number or negative is not counted. O(1): the window is 64 frames.
+  // A frame has been drawn. A time that is not a number or negative is not counted. O(1): the window is 64 frames, the
+  // last ones and of each number of samples at least one.
   void add(const FrameWork& work, double ms);
 
   // What the model says of `work`; 0 before the first frame.
@@ -65,6 +66,7 @@ class FrameBudget {
     double ms = 0, predicted_ms = 0;
   };
   void fit();
+  void forgetOne();
   double margin() const;
   std::vector<double> ratios(const FrameWork* like) const;
   bool hasChanged() const;

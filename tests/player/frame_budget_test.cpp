@@ -211,6 +211,27 @@ TEST(MotionQuality, WhatSavesLittleIsNotGivenUp) {
   EXPECT_LE(coarse, 6);
 }
 
+// Coarse pictures for longer than the window is: what samples cost is not forgotten with the last fine one.
+TEST(MotionQuality, LongCoarseFilmsDoNotForgetWhatSamplesCost) {
+  for (const double slow : {1.0, 2.5, 6.0}) {
+    FrameBudget budget{33};
+    MotionQuality quality{4};
+    const double pixels = 1024.0 * 1024;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> noise(0.9, 1.15);
+    for (int i = 0; i < 600; ++i) {
+      const double primitives = 60000 + 80 * i;
+      const Quality q = quality.next(budget, pixels, primitives, 0, i > 0);
+      const double samples = static_cast<double>(q.samples) / (q.divide * q.divide);
+      const double ms = slow * noise(random) * (9 + 1e-4 * primitives + 28 * samples);
+      budget.add({primitives, 0, samples * pixels}, ms);
+      if (i > 2) {
+        EXPECT_LT(samples, 4) << "picture " << i << " of " << ms << " ms, " << slow;
+      }
+    }
+  }
+}
+
 // Nothing fits for the length of one picture, the first at its level: that level saves as much as before.
 TEST(MotionQuality, OneSlowCoarsePictureDoesNotBringBackTheFinest) {
   Motion motion;
