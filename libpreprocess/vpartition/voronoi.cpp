@@ -172,7 +172,7 @@ class Relaxation {
     for (std::size_t i = 0; i < sites_.size(); ++i) {
       const Sum& sum = sums_[i];
       if (!(sum.space2 > 0) && !(sum.time2 > 0)) continue;
-      const double ratio = sum.time2 > 0 ? sum.space2 / 2 / sum.time2 : static_cast<double>(kMostTime / kEven);
+      const double ratio = sum.time2 > 0 ? sum.space2 / 2 / sum.time2 : static_cast<double>(kMostTime) / kEven;
       ratios[i] = std::clamp(ratio, static_cast<double>(kLeastTime) / kEven, static_cast<double>(kMostTime) / kEven);
     }
     for (std::size_t i = 0; i < sites_.size(); ++i) {

@@ -364,7 +364,7 @@ TEST(CellsLoad, WhatIsNoManifoldIsRefusedOrStaysToTheBit) {
   const SlimMesh was = keptMesh(file, before);
   EXPECT_EQ(before.vertices, 4u);
   EXPECT_EQ(before.triangles, 1u);
-  for (const std::uint64_t share : {6, 2}) {
+  for (const std::uint64_t share : {std::uint64_t{6}, std::uint64_t{2}}) {
     cells.cell_tets = file.header().tets / share;
     const CellReport report = simplifyTo(out, file, options, cells, {2});
     EXPECT_LE(report.tets, options.target_tets);
