@@ -15,7 +15,7 @@ import threading
 
 FIELDS = {
     "name", "run", "shell", "exit", "stdout", "stderr", "not_stdout", "not_stderr", "json", "json_file", "file",
-    "absent", "prepare", "stdin", "limits", "interrupt", "needs", "check", "timeout",
+    "absent", "prepare", "stdin", "limits", "interrupt", "needs", "check", "timeout", "measures_memory",
 }
 
 
@@ -125,6 +125,8 @@ class Runner:
                 raise Skip(f"{need} is not there")
         if self.sanitized and ("data" in case.get("limits", {}) or "ulimit -d" in case.get("shell", "")):
             raise Skip("sanitizers need more address space")
+        if self.sanitized and case.get("measures_memory"):
+            raise Skip("sanitizers take memory of their own")
 
     def set_limits(self, limits):
         """For the child: its limits, and signals as a shell would leave them."""

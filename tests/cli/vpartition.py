@@ -62,6 +62,7 @@ CASES = [
         "name": "a dry run bounds memory and bytes",
         "shell": BALL + f"vpartition ball.t4h -o a.t4p {SMALL} -q --stats s.json; vpartition ball.t4h -o b.t4p {SMALL} -n; test ! -e b.t4p",
         "check": check_plan,
+        "measures_memory": True,
         "needs": ["tet4d-mc", "vpartition"],
     },
     {
