@@ -12,11 +12,14 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 
 FIELDS = {
     "name", "run", "shell", "exit", "stdout", "stderr", "not_stdout", "not_stderr", "json", "json_file", "file",
     "absent", "prepare", "stdin", "limits", "interrupt", "needs", "check", "timeout", "measures_memory",
 }
+
+SLOW = 5  # seconds from which a case is named
 
 
 class Result:
@@ -244,12 +247,15 @@ def main():
     cases = [(number, case) for number, case in enumerate(load_cases(options.cases)) if options.only in case["name"]]
     held = failed = skipped = 0
     for number, case in cases[first - 1::step]:
+        start = time.monotonic()
         try:
             fault = runner.run(case, number)
         except Skip as reason:
             skipped += 1
             print(f"skipped  {case['name']}: {reason}")
             continue
+        if (spent := time.monotonic() - start) >= SLOW:
+            print(f"slow     {case['name']}: {spent:.1f} s")
         if fault is None:
             held += 1
         else:
