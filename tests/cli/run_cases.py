@@ -16,7 +16,7 @@ import time
 
 FIELDS = {
     "name", "run", "shell", "exit", "stdout", "stderr", "not_stdout", "not_stderr", "json", "json_file", "file",
-    "absent", "prepare", "stdin", "limits", "interrupt", "needs", "check", "timeout", "measures_memory",
+    "absent", "prepare", "stdin", "limits", "interrupt", "needs", "check", "timeout", "measures_memory", "long_sweep",
 }
 
 SLOW = 5  # seconds from which a case is named
@@ -130,6 +130,8 @@ class Runner:
             raise Skip("sanitizers need more address space")
         if self.sanitized and case.get("measures_memory"):
             raise Skip("sanitizers take memory of their own")
+        if self.sanitized and case.get("long_sweep"):
+            raise Skip("the programs it runs have suites of their own")
 
     def set_limits(self, limits):
         """For the child: its limits, and signals as a shell would leave them."""

@@ -262,6 +262,7 @@ CASES = [
     },
     {
         "name": "stiff cases through to pictures",
+        "long_sweep": True,
         "run": ["tet4d-report", "stiff", "dyntri", "--folder", "r", "--commit", "c0ffee", "-q"],
         "check": check_stiff_triangles,
         "needs": ["tet4d-mc", "dyntri-build", "tet4d-play"],
@@ -269,6 +270,7 @@ CASES = [
     },
     {
         "name": "orders, metrics and ratios of simplification, and the peer or its absence",
+        "long_sweep": True,
         "run": ["tet4d-report", "qslim", "--folder", "r", "--commit", "c0ffee", "-q"],
         "check": check_slim,
         "needs": ["tet4d-mc", "hyper-qslim", "tet4d-convert"],
@@ -276,6 +278,7 @@ CASES = [
     },
     {
         "name": "stiff cases of simplification",
+        "long_sweep": True,
         "run": ["tet4d-report", "stiff", "qslim", "--folder", "r", "--commit", "c0ffee", "-q"],
         "check": check_stiff_slim,
         "needs": ["tet4d-mc", "hyper-qslim"],
