@@ -29,7 +29,7 @@ NEW = 2  # pictures that fill buffers for the first time
 STALL_MEDIANS, STALL_FLOOR_MS = 2, 20
 LONGEST_MEDIANS = 3  # of a whole picture of a film that waits; longer ones are nobody's fault if the film without a limit has them too
 RUNNING = ("forward", "backward")  # whose next pages are known
-PLAYS = 3  # of a film that stalls, on a machine that others use too
+PLAYS, MAX_BUSY = 3, 0.1  # of a film that stalls on a machine whose cores other programs use to more than this share
 
 COLUMNS = ["film", "arrival", "pictures", "first two ms", "median ms", "p95", "longest", "longest / median", "… without a limit", "longest load ms",
            "plays", "others", "absent pages", "read / file", "unused", "pages' peak MB"]
@@ -148,7 +148,7 @@ def main():
                 wrong += sum(a != b and not f["absent"] for a, b, f in zip(right, pictures, shown, strict=True))
                 wrong += sum(f["absent"] for f in shown) if arrival == "wait" else 0
                 ms, counts = times_of(shown), told["counts"]
-                if not stalls(name, arrival, ms, free):
+                if not stalls(name, arrival, ms, free) or others <= MAX_BUSY:
                     break
             stalled += filter(None, [stalls(name, arrival, ms, free)])
             cells = [name, arrival, len(shown), ", ".join(f"{one:.1f}" for one in ms["first"]), f"{ms['median']:.1f}", f"{ms['p95']:.1f}",
